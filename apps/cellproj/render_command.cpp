@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "commands.hpp"
+#include "input.hpp"
+#include "mesh/error.hpp"
+#include "mesh/scalar_field.hpp"
+#include "progress.hpp"
+#include "render/output_file.hpp"
+#include "render/renderer.hpp"
+
+namespace cellproj::cli {
+
+namespace {
+
+struct RenderOptions {
+    InputOptions input;
+    std::filesystem::path output, camera, transfer, stats;
+    std::string field, projection = "perspective", size = "512x512";
+    std::vector<double> from{-1, -2, 1}, up{0, 0, 1}, background{1, 1, 1};
+    double orbit_degrees = 0;
+    int frames = 1, bits = 8;
+    Quality quality;
+};
+
+glm::dvec3 vector3(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+ImageSize parse_size(const std::string& text) {
+    ImageSize size;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) != 2) {
+        throw Error({ErrorKind::option, "--size", "WIDTHxHEIGHT, such as 800x600", text, ""});
+    }
+    validate(size, "--size");
+    return size;
+}
+
+std::vector<Camera> choose_cameras(const RenderOptions& options, const Input& input, ImageSize size) {
+    std::vector<Camera> cameras;
+    if (!options.camera.empty()) {
+        cameras = read_cameras(options.camera);
+    } else if (input.camera) {
+        cameras = {*input.camera};
+    } else {
+        cameras = {frame_bounds(bounds(input.mesh->points),
+                                options.projection == "parallel" ? Camera::Projection::parallel
+                                                                 : Camera::Projection::perspective,
+                                vector3(options.from), vector3(options.up),
+                                static_cast<double>(size.width) / size.height)};
+        validate(cameras.front(), "--from, --up");
+    }
+    if (options.frames == 1) return cameras;
+    if (cameras.size() != 1) {
+        throw Error({ErrorKind::option, "--frames", "one camera to turn",
+                     std::to_string(cameras.size()) + " cameras in " + options.camera.string(),
+                     "leave --orbit and --frames out, or give one camera"});
+    }
+    std::vector<Camera> turned;
+    for (int i = 0; i < options.frames; ++i) {
+        turned.push_back(orbit(cameras.front(), options.orbit_degrees * i / options.frames));
+    }
+    return turned;
+}
+
+std::shared_ptr<const TransferFunction> choose_transfer(const RenderOptions& options, const Input& input,
+                                                        const ScalarField& field) {
+    if (!options.transfer.empty()) {
+        return std::make_shared<TransferFunction>(read_transfer_function(options.transfer));
+    }
+    if (input.transfer && options.field.empty()) return input.transfer;
+    // The 1 % at each end are outliers more often than flow.
+    double low = quantile(field.values, 0.01), high = quantile(field.values, 0.99);
+    if (low == high) {
+        low = range(field.values).low;
+        high = range(field.values).high;
+    }
+    return std::make_shared<TransferFunction>(
+        default_transfer_function(low, high, bounds(input.mesh->points).diagonal()));
+}
+
+// picture.png → picture_007.png when there are several.
+std::filesystem::path numbered(const std::filesystem::path& file, std::size_t index, std::size_t count) {
+    if (count == 1) return file;
+    char number[32];
+    std::snprintf(number, sizeof number, "_%03zu", index);
+    return file.parent_path() / (file.stem().string() + number + file.extension().string());
+}
+
+void write(const Image& image, const std::filesystem::path& file, const RenderOptions& options,
+           const std::map<std::string, std::string>& text) {
+    if (file.extension() == ".exr") {
+        write_exr(image, file, text);
+    } else {
+        write_png(image, file, {.background = vector3(options.background), .bits = options.bits, .text = text});
+    }
+}
+
+// No blank or doubtful picture without a word.
+void warn(const Image& image, const Statistics& statistics, const std::filesystem::path& file) {
+    const bool blank = std::all_of(image.pixels.begin(), image.pixels.end(), [](const glm::vec4& p) {
+        return std::max({p.x, p.y, p.z, p.w}) < 0.5F / 255;
+    });
+    if (blank) {
+        std::fprintf(stderr,
+                     "cellproj: warning: %s is blank: %zu of %zu cells were in view and visible; check the camera and "
+                     "the transfer function's range\n",
+                     file.c_str(), statistics.counts.drawn, statistics.counts.cells);
+    }
+    if (statistics.counts.unordered > 0) {
+        std::fprintf(stderr,
+                     "cellproj: warning: %s: %zu cells lie in visibility cycles and were ordered by depth only\n",
+                     file.c_str(), statistics.counts.unordered);
+    }
+}
+
+void print_line(const std::filesystem::path& file, const Statistics& s) {
+    std::printf("%s: %zu of %zu cells, %zu triangles, %.0f ms (sort %.0f, project %.0f, draw %.0f)\n", file.c_str(),
+                s.counts.drawn, s.counts.cells, s.counts.triangles, s.ms.total, s.ms.sort, s.ms.project, s.ms.draw);
+}
+
+void render_pictures(const RenderOptions& options) {
+    // Everything that can be refused without reading the mesh comes first.
+    const ImageSize size = parse_size(options.size);
+    require_writable_image(options.output);
+    if (!options.stats.empty()) require_writable(options.stats);
+
+    const Input input = load(options.input);
+    const auto field =
+        std::make_shared<const ScalarField>(select_scalar(*input.mesh, options.field, input.name));
+    const Scene scene{input.mesh, field, choose_transfer(options, input, *field)};
+    const std::vector<Camera> cameras = choose_cameras(options, input, size);
+
+    RunStatistics run;
+    run.once_ms.read = input.read_ms;
+    run.once_ms.tetrahedralize = input.tetrahedralize_ms;
+    const Stopwatch preparing;
+    const auto renderer = make_renderer(Backend::gl_osmesa);
+    run.once_ms.prepare = preparing.ms();
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        const std::filesystem::path file = numbered(options.output, i, cameras.size());
+        const Progress progress("rendering " + file.string());
+        Statistics statistics;
+        const Image image = renderer->render(scene, cameras[i], size, options.quality, &statistics);
+        const Stopwatch writing;
+        write(image, file, options,
+              {{"Software", "cellproj " CELLPROJ_VERSION},
+               {"cellproj field", field->name},
+               {"cellproj camera", to_json(cameras[i])},
+               {"cellproj method", statistics.method},
+               {"cellproj order", statistics.order},
+               {"cellproj backend", statistics.backend + ", " + statistics.backend_version}});
+        statistics.ms.write = writing.ms();
+        warn(image, statistics, file);
+        print_line(file, statistics);
+        run.pictures.push_back(std::move(statistics));
+    }
+    run.peak_memory_bytes = peak_memory_bytes();
+    if (!options.stats.empty()) write_text_file(options.stats, to_json(run) + "\n");
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+    auto options = std::make_shared<RenderOptions>();
+    CLI::App* command = app.add_subcommand("render", "Render a mesh to a picture.");
+    command->add_option("FILE", options->input.file, "A .vtu, .vtk or PLOT3D grid file, or demo:sphere")->required();
+    command->add_option("-o,--output", options->output, "The picture: .png or .exr; several become NAME_000.png …")
+        ->required();
+    command->add_option("--q", options->input.solution, "PLOT3D: the solution file that belongs to the grid");
+    command->add_option("--field", options->field, "The field to draw (default: the first); vectors by magnitude");
+    command->add_option("--transfer", options->transfer, "Transfer function (JSON); default: viridis over the 1-99 % range");
+    CLI::Option* camera = command->add_option("--camera", options->camera, "Camera or array of cameras (JSON)");
+    command->add_option("--from", options->from, "Direction from which the whole mesh is seen: X,Y,Z")
+        ->expected(3)->delimiter(',')->capture_default_str()->excludes(camera);
+    command->add_option("--up", options->up, "What appears upwards: X,Y,Z")
+        ->expected(3)->delimiter(',')->capture_default_str()->excludes(camera);
+    command->add_option("--projection", options->projection, "parallel or perspective")
+        ->check(CLI::IsMember({"parallel", "perspective"}))->capture_default_str()->excludes(camera);
+    command->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    command->add_option("--orbit", options->orbit_degrees, "Turn the camera by DEGREES in all, over --frames pictures")
+        ->check(CLI::Range(-36000.0, 36000.0));
+    command->add_option("--frames", options->frames, "Number of pictures of the orbit")->check(CLI::Range(1, 100000));
+    command->add_option("--background", options->background, "Colour behind the volume in a PNG: R,G,B in 0..1")
+        ->expected(3)->delimiter(',')->check(CLI::Range(0.0, 1.0))->capture_default_str();
+    command->add_option("--bits", options->bits, "Bits per channel of a PNG: 8 or 16")
+        ->check(CLI::IsMember({8, 16}))->capture_default_str();
+    command->add_option("--table", options->quality.table_size, "Texels per axis of the pre-integration table")
+        ->check(CLI::Range(2, 256))->capture_default_str();
+    command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
+    command->callback([options] { render_pictures(*options); });
+}
+
+}  // namespace cellproj::cli

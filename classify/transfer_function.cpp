@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "classify/transfer_function.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <limits>
+#include <utility>
+
+#include "mesh/error.hpp"
+
+namespace cellproj {
+
+namespace {
+
+constexpr double largest_scalar = 1e150;
+constexpr double largest_value = 1e60;
+
+double value_of(const ExtinctionNode& node) {
+    return node.extinction;
+}
+glm::dvec3 value_of(const ColorNode& node) {
+    return node.color;
+}
+
+template <class Value>
+Value interpolate(const Value& at_0, const Value& at_1, double t) {
+    return at_0 * (1.0 - t) + at_1 * t;  // exact at both ends and never negative between non-negative values
+}
+
+// Index of the first node behind s.
+template <class Node>
+std::size_t first_behind(const std::vector<Node>& nodes, double s) {
+    const auto behind = std::upper_bound(nodes.begin(), nodes.end(), s,
+                                         [](double scalar, const Node& node) { return scalar < node.scalar; });
+    return static_cast<std::size_t>(behind - nodes.begin());
+}
+
+template <class Node>
+auto value_between(const Node& left, const Node& right, double s) {
+    return interpolate(value_of(left), value_of(right), (s - left.scalar) / (right.scalar - left.scalar));
+}
+
+template <class Node>
+auto value_at(const std::vector<Node>& nodes, double s, Outside outside) -> decltype(value_of(nodes[0])) {
+    const bool is_outside = s < nodes.front().scalar || s > nodes.back().scalar;
+    if (is_outside && outside == Outside::transparent) return {};
+    const std::size_t i = first_behind(nodes, s);
+    if (i == 0) return value_of(nodes.front());
+    if (i == nodes.size()) return value_of(nodes.back());
+    return value_between(nodes[i - 1], nodes[i], s);
+}
+
+// Limits from inside at both ends of begin..end, which has no node strictly inside.
+template <class Node>
+auto limits_between(const std::vector<Node>& nodes, double begin, double end, Outside outside) {
+    using Value = decltype(value_of(nodes[0]));
+    const std::size_t i = first_behind(nodes, begin);
+    if (i > 0 && i < nodes.size())
+        return std::pair(value_between(nodes[i - 1], nodes[i], begin), value_between(nodes[i - 1], nodes[i], end));
+    const Value constant = outside == Outside::transparent ? Value{} : value_of(i == 0 ? nodes.front() : nodes.back());
+    return std::pair(constant, constant);
+}
+
+// Largest component over [a, b]. A step at b counts with both sides, a step at a with its right side only.
+template <class Node, class Component>
+double max_over(const std::vector<Node>& nodes, double a, double b, Outside outside, Component component) {
+    double largest = std::max(component(value_at(nodes, a, outside)), component(value_at(nodes, b, outside)));
+    for (std::size_t i = first_behind(nodes, a); i < nodes.size() && nodes[i].scalar <= b; ++i)
+        largest = std::max(largest, component(value_of(nodes[i])));
+    return largest;
+}
+
+double identity(double value) {
+    return value;
+}
+double largest_component(const glm::dvec3& v) {
+    return std::max({v.x, v.y, v.z});
+}
+
+std::string text(double number) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+    return {digits.data(), end};
+}
+
+[[noreturn]] void fail(const std::string& place, std::string expected, std::string found, std::string advice) {
+    throw Error({ErrorKind::data, place, std::move(expected), std::move(found), std::move(advice)});
+}
+
+void require_value(double value, double largest, const std::string& what, const std::string& place) {
+    if (value >= 0.0 && value <= largest) return;  // false for NaN
+    fail(place, what + " in 0 .. " + text(largest), text(value), "correct this node");
+}
+
+// `what` is the nodes' name in the JSON, so that "color[3]" leads to the same node in a file and in a program.
+template <class Node>
+void require_ascending(const std::vector<Node>& nodes, const std::string& what, const std::string& place) {
+    if (nodes.empty()) fail(place + ": " + what, "at least one node", "none", "give at least one node");
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const std::string here = place + ": " + what + "[" + std::to_string(i) + "]";
+        const double s = nodes[i].scalar;
+        if (!(std::abs(s) <= largest_scalar))
+            fail(here, "a finite scalar of magnitude up to 1e150", text(s), "correct this node");
+        if (i >= 1 && s < nodes[i - 1].scalar)
+            fail(here, "scalars in ascending order", text(s) + " after " + text(nodes[i - 1].scalar), "sort the nodes");
+        if (i >= 2 && s == nodes[i - 2].scalar)
+            fail(here, "at most two nodes (a step) at one scalar", "a third node at " + text(s), "remove one of them");
+    }
+}
+
+void require_valid(const std::vector<ColorNode>& nodes, const std::string& place) {
+    require_ascending(nodes, "color", place);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        for (int channel = 0; channel < 3; ++channel)
+            require_value(nodes[i].color[channel], largest_value, "color components",
+                          place + ": color[" + std::to_string(i) + "]");
+}
+
+void require_valid(const std::vector<ExtinctionNode>& nodes, const std::string& place) {
+    require_ascending(nodes, "extinction", place);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        require_value(nodes[i].extinction, largest_value, "an extinction",
+                      place + ": extinction[" + std::to_string(i) + "]");
+}
+
+void require_valid(const std::vector<OpacityNode>& nodes, const std::string& place) {
+    require_ascending(nodes, "opacity", place);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        require_value(nodes[i].opacity, 1.0, "an opacity", place + ": opacity[" + std::to_string(i) + "]");
+}
+
+std::vector<double> scalars_of(const std::vector<ColorNode>& color, const std::vector<ExtinctionNode>& extinction) {
+    std::vector<double> scalars;
+    for (const ColorNode& node : color)
+        scalars.push_back(node.scalar);
+    for (const ExtinctionNode& node : extinction)
+        scalars.push_back(node.scalar);
+    std::sort(scalars.begin(), scalars.end());
+    scalars.erase(std::unique(scalars.begin(), scalars.end()), scalars.end());
+    return scalars;
+}
+
+// ∫ τ over a..b inside one piece: the trapezoid is exact.
+double integral_in(const LinearPiece& piece, double a, double b) {
+    return (b - a) * 0.5 * (piece.extinction(a) + piece.extinction(b));
+}
+
+}  // namespace
+
+double LinearPiece::fraction(double s) const {
+    const double width = end - begin;
+    return std::isfinite(width) ? std::clamp((s - begin) / width, 0.0, 1.0) : 0.0;
+}
+
+glm::dvec3 LinearPiece::color(double s) const {
+    return interpolate(color_begin, color_end, fraction(s));
+}
+double LinearPiece::extinction(double s) const {
+    return interpolate(extinction_begin, extinction_end, fraction(s));
+}
+
+TransferFunction::TransferFunction(OpticalModel model, std::vector<ColorNode> color,
+                                   std::vector<ExtinctionNode> extinction, Outside outside, const std::string& place)
+    : model_(model), color_(std::move(color)), extinction_(std::move(extinction)), outside_(outside) {
+    require_valid(color_, place);
+    require_valid(extinction_, place);
+    breakpoints_ = scalars_of(color_, extinction_);
+
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i <= breakpoints_.size(); ++i) {
+        const double begin = i == 0 ? -infinity : breakpoints_[i - 1];
+        const double end = i == breakpoints_.size() ? infinity : breakpoints_[i];
+        const auto [color_begin, color_end] = limits_between(color_, begin, end, outside_);
+        const auto [extinction_begin, extinction_end] = limits_between(extinction_, begin, end, outside_);
+        pieces_.push_back({begin, end, color_begin, color_end, extinction_begin, extinction_end});
+    }
+
+    cumulative_extinction_.push_back({0.0, 0.0});
+    for (std::size_t i = 1; i < breakpoints_.size(); ++i) {
+        const RunningIntegral before = cumulative_extinction_.back();
+        const double piece = integral_in(pieces_[i], breakpoints_[i - 1], breakpoints_[i]);
+        // Knuth's two-sum: sum + lost is exactly before.sum + piece.
+        const double sum = before.sum + piece;
+        const double added = sum - before.sum;
+        const double lost = (before.sum - (sum - added)) + (piece - added);
+        cumulative_extinction_.push_back({sum, before.rest + lost});
+    }
+}
+
+glm::dvec3 TransferFunction::color(double s) const {
+    return value_at(color_, s, outside_);
+}
+double TransferFunction::extinction(double s) const {
+    return value_at(extinction_, s, outside_);
+}
+
+glm::dvec3 TransferFunction::emission(double s) const {
+    return model_ == OpticalModel::density ? color(s) * extinction(s) : color(s);
+}
+
+// Rest of the first piece, difference of running integrals, start of the last piece; the trapezoid when one piece holds
+// both ends.
+double TransferFunction::extinction_integral(double a, double b) const {
+    assert(a <= b);
+    if (a == b) return 0.0;
+    const auto first = std::upper_bound(breakpoints_.begin(), breakpoints_.end(), a) - breakpoints_.begin();
+    const auto last = std::lower_bound(breakpoints_.begin(), breakpoints_.end(), b) - breakpoints_.begin();
+    const auto i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(last);
+    if (i == j) return integral_in(pieces_[i], a, b);
+    const RunningIntegral &from = cumulative_extinction_[i], &to = cumulative_extinction_[j - 1];
+    const double between = std::max(0.0, (to.sum - from.sum) + (to.rest - from.rest));
+    return integral_in(pieces_[i], a, breakpoints_[i]) + between + integral_in(pieces_[j], breakpoints_[j - 1], b);
+}
+
+double TransferFunction::max_extinction(double a, double b) const {
+    assert(a <= b);
+    return max_over(extinction_, a, b, outside_, identity);
+}
+
+bool TransferFunction::visible(double a, double b) const {
+    if (max_extinction(a, b) > 0.0) return true;
+    return model_ == OpticalModel::emitter && max_over(color_, a, b, outside_, largest_component) > 0.0;
+}
+
+std::vector<ExtinctionNode> extinction_from_opacity(const std::vector<OpacityNode>& opacity, double unit_distance,
+                                                    OpacityConvention convention, const std::string& place) {
+    require_valid(opacity, place);
+    if (!(unit_distance > 0.0 && std::isfinite(unit_distance)))
+        throw Error({ErrorKind::option, place + ": unit_distance", "a length > 0 [mesh units]", text(unit_distance),
+                     "give the distance that the opacities hold for"});
+
+    std::vector<ExtinctionNode> nodes;
+    if (convention == OpacityConvention::linear) {
+        for (const OpacityNode& node : opacity)
+            nodes.push_back({node.scalar, node.opacity / unit_distance});
+        return nodes;
+    }
+
+    // WVG91 Eq. 2. Between two nodes 1 − α is linear in s, and the chord of −ln x over a ratio e^h of x errs by at most
+    // h²/8. So nodes at equal steps h of optical depth are enough, whatever the scalars.
+    constexpr double longest_step = 0.0894;  // h²/8 < 1e-3
+    constexpr double opaque = 1.0 - 0x1p-24;
+    const auto alpha = [&](std::size_t i) { return std::min(opacity[i].opacity, opaque); };
+    const auto depth = [&](std::size_t i) { return -std::log1p(-alpha(i)); };
+    for (std::size_t i = 0; i < opacity.size(); ++i) {
+        const double s = opacity[i].scalar;
+        const double steps = i == 0 ? 0.0 : std::ceil(std::abs(depth(i) - depth(i - 1)) / longest_step);
+        for (double step = 1.0; step < steps; ++step) {
+            const double d = interpolate(depth(i - 1), depth(i), step / steps);
+            const double t = (-std::expm1(-d) - alpha(i - 1)) / (alpha(i) - alpha(i - 1));
+            const double inserted = std::lerp(opacity[i - 1].scalar, s, t);
+            if (inserted > nodes.back().scalar && inserted < s) nodes.push_back({inserted, d / unit_distance});
+        }
+        nodes.push_back({s, depth(i) / unit_distance});
+    }
+    return nodes;
+}
+
+TransferFunction default_transfer_function(double low, double high, double size) {
+    assert(low <= high && size >= 0.0);
+    // Every 16th entry (the last: the 255th) of matplotlib's viridis by van der Walt and Smith, released under CC0.
+    static constexpr std::array<std::array<double, 3>, 17> viridis{{
+        {0.267004, 0.004874, 0.329415},
+        {0.282327, 0.094955, 0.417331},
+        {0.278826, 0.175490, 0.483397},
+        {0.258965, 0.251537, 0.524736},
+        {0.229739, 0.322361, 0.545706},
+        {0.199430, 0.387607, 0.554642},
+        {0.172719, 0.448791, 0.557885},
+        {0.149039, 0.508051, 0.557250},
+        {0.127568, 0.566949, 0.550556},
+        {0.120638, 0.625828, 0.533488},
+        {0.157851, 0.683765, 0.501686},
+        {0.246070, 0.738910, 0.452024},
+        {0.369214, 0.788888, 0.382914},
+        {0.515992, 0.831158, 0.294279},
+        {0.678489, 0.863742, 0.189503},
+        {0.845561, 0.887322, 0.099702},
+        {0.993248, 0.906157, 0.143936},
+    }};
+    std::vector<ColorNode> color;
+    for (std::size_t k = 0; k < viridis.size(); ++k) {
+        const double s = std::lerp(low, high, std::min(16.0 * static_cast<double>(k) / 255.0, 1.0));
+        // In a range of few ulps, down to a constant field, neighbouring nodes fall together: the higher one stays.
+        if (!color.empty() && s <= color.back().scalar) color.pop_back();
+        color.push_back({s, {viridis[k][0], viridis[k][1], viridis[k][2]}});
+    }
+    const double densest = 8.0 / (size > 0.0 ? size : 1.0);
+    std::vector<ExtinctionNode> extinction{{low, 0.0}, {high, densest}};
+    if (low == high) extinction.erase(extinction.begin());
+    return {OpticalModel::density, std::move(color), std::move(extinction)};
+}
+
+}  // namespace cellproj

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// From scalar to light. A transfer function gives emission q(s) [radiance / length] and extinction τ(s) [1 / length],
+// each piecewise linear or, in the density model, the product of two piecewise-linear functions:
+//
+//   density (Williams and Max; RKE00 Eq. 1)  q(s) = κ(s)·τ(s), κ the chromaticity ("color"), τ the density
+//   emitter (WVG91)                          q(s) given directly ("color"), τ(s) independent of it
+//
+// All colours that leave classify/ are associated (premultiplied by opacity), display-referred, without hidden gamma.
+#pragma once
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cellproj {
+
+enum class OpticalModel { density, emitter };
+
+// How opacity α per unit distance u becomes extinction: exponential τ = −ln(1 − α)/u (WVG91 Eq. 2), or linear τ = α/u,
+// which VTK's projected tetrahedra uses.
+enum class OpacityConvention { exponential, linear };
+
+// What holds outside the first and the last node: their values, or nothing (q = τ = 0).
+enum class Outside { clamp, transparent };
+
+struct ColorNode {
+    double scalar;
+    glm::dvec3 color;
+};
+
+struct ExtinctionNode {
+    double scalar;
+    double extinction;  // ≥ 0 [1 / mesh unit]
+};
+
+struct OpacityNode {
+    double scalar;
+    double opacity;  // 0..1 per unit distance
+};
+
+// Light of a piece of a ray: associated colour and opacity.
+struct Light {
+    glm::dvec3 color{0.0};
+    double opacity = 0.0;
+};
+
+// The function between two neighbouring breakpoints, where colour and extinction are linear in s. The values at the
+// ends are limits from inside, so that a step belongs to neither side. The outermost pieces are constant and reach to
+// ∓infinity.
+struct LinearPiece {
+    double begin, end;  // scalars, begin < end
+    glm::dvec3 color_begin, color_end;
+    double extinction_begin, extinction_end;
+
+    // Where s lies between the ends, 0..1; 0 in a piece without end.
+    double fraction(double s) const;
+    glm::dvec3 color(double s) const;
+    double extinction(double s) const;
+};
+
+// Two nodes at one scalar make a step; the value at the step itself is that of the right side. With
+// Outside::transparent the first and the last node still count as inside. Immutable; copies are independent values.
+class TransferFunction {
+public:
+    // Nodes by ascending scalar, at least one each, at most two at one scalar, all finite, colours and extinctions ≥ 0.
+    // |scalar| ≤ 1e150 and colours and extinctions ≤ 1e60, so that no product of theirs with a length overflows.
+    // Throws Error (data), naming `place`, the node (counted from 0) and what is wrong with it.
+    TransferFunction(OpticalModel model, std::vector<ColorNode> color, std::vector<ExtinctionNode> extinction,
+                     Outside outside = Outside::clamp, const std::string& place = "transfer function");
+
+    OpticalModel model() const { return model_; }
+    Outside outside() const { return outside_; }
+    const std::vector<ColorNode>& color_nodes() const { return color_; }
+    const std::vector<ExtinctionNode>& extinction_nodes() const { return extinction_; }
+
+    glm::dvec3 color(double s) const;     // κ(s) or, in the emitter model, q(s)
+    double extinction(double s) const;    // τ(s)
+    glm::dvec3 emission(double s) const;  // q(s)
+
+    // Every scalar at which the colour or the extinction has a node, ascending, each once.
+    const std::vector<double>& breakpoints() const { return breakpoints_; }
+    // One piece more than breakpoints: pieces()[i] ends at breakpoints()[i], the last one at infinity.
+    const std::vector<LinearPiece>& pieces() const { return pieces_; }
+
+    // Exact ∫ τ ds over [a, b], a ≤ b.
+    double extinction_integral(double a, double b) const;
+    // Largest τ and whether anything can be seen (τ > 0 or q > 0) for scalars in [a, b], a ≤ b.
+    double max_extinction(double a, double b) const;
+    bool visible(double a, double b) const;
+
+private:
+    OpticalModel model_;
+    std::vector<ColorNode> color_;
+    std::vector<ExtinctionNode> extinction_;
+    Outside outside_;
+    std::vector<double> breakpoints_;
+    std::vector<LinearPiece> pieces_;
+    // ∫ τ from the first breakpoint to each, as the unevaluated sum of two float64: a weak part of the function keeps
+    // its digits in the difference of two values even behind a part 1e16 times as strong.
+    struct RunningIntegral {
+        double sum, rest;
+    };
+    std::vector<RunningIntegral> cumulative_extinction_;
+};
+
+// Extinction nodes for a piecewise-linear opacity. With the exponential convention τ(s) is curved between nodes: nodes
+// are inserted until the piecewise-linear τ·u is within 1e-3 of −ln(1 − α) everywhere. α = 1 would be an infinite
+// extinction; it counts as 1 − 2⁻²⁴, the last opacity that float32 can tell from 1. Where float64 has no scalar left
+// between two nodes nothing can be inserted. Throws Error (data) for an opacity outside 0..1 or a bad order of nodes,
+// Error (option) unless unit_distance > 0 [mesh units].
+std::vector<ExtinctionNode> extinction_from_opacity(const std::vector<OpacityNode>& opacity, double unit_distance,
+                                                    OpacityConvention convention,
+                                                    const std::string& place = "transfer function");
+
+// The strict JSON of the design: "color" and "extinction", or "color" and "opacity" with "unit_distance"; "model"
+// (density unless given), "opacity_convention" (exponential) and "outside" (clamp). Throws Error (format, option, data)
+// naming `place` and the key.
+//
+// ParaView's exported colour maps are read as well (RGB, Lab or Diverging colour space, opacity points included in the
+// export). They do not tell the unit distance of their opacity: it is taken from a key "unit_distance" added beside
+// "Points", else from `paraview_unit_distance` [mesh units]. ParaView itself starts with the bounding box's diagonal
+// divided by ∛(number of cells).
+TransferFunction parse_transfer_function(std::string_view json, const std::string& place,
+                                         double paraview_unit_distance = 1.0);
+// Throws Error (file) besides, when the file cannot be read.
+TransferFunction read_transfer_function(const std::filesystem::path& file, double paraview_unit_distance = 1.0);
+
+// A first picture for scalars in low..high of a mesh `size` [mesh units] across: perceptual colours (viridis), and an
+// extinction that rises from 0 so that a path through the whole mesh at the highest scalar has optical depth 8. low ≤
+// high; a constant field gets the highest scalar's light; size 0 counts as 1.
+TransferFunction default_transfer_function(double low, double high, double size);
+
+}  // namespace cellproj

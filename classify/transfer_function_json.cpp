@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Transfer functions from JSON: cellproj's own strict form, and ParaView's exported colour maps.
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "classify/color_space.hpp"
+#include "classify/transfer_function.hpp"
+#include "mesh/error.hpp"
+
+namespace cellproj {
+
+namespace {
+
+using Json = nlohmann::json;
+
+[[noreturn]] void fail(ErrorKind kind, const std::string& place, std::string expected, std::string found,
+                       std::string advice) {
+    throw Error({kind, place, std::move(expected), std::move(found), std::move(advice)});
+}
+
+// What stands there, short enough for a message.
+std::string shown(const Json& value) {
+    constexpr std::size_t longest = 60;
+    std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (text.size() > longest) text = text.substr(0, longest) + " …";
+    return text;
+}
+
+std::string element(const std::string& place, std::size_t index) {
+    return place + "[" + std::to_string(index) + "]";
+}
+
+// "PLACE:LINE:COLUMN" of a byte, both counted from 1.
+std::string position_of(std::string_view text, std::size_t byte, const std::string& place) {
+    const std::string_view before = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
+    const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+    const std::size_t line_start = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
+    return place + ":" + std::to_string(line) + ":" + std::to_string(before.size() - line_start + 1);
+}
+
+// nlohmann-json keeps the last of two equal keys in silence; this callback refuses them.
+class DuplicateKeys {
+public:
+    explicit DuplicateKeys(std::string place) : place_(std::move(place)) {}
+
+    bool operator()(Json::parse_event_t event, const Json& parsed) {
+        if (event == Json::parse_event_t::object_start) open_.emplace_back();
+        if (event == Json::parse_event_t::object_end) open_.pop_back();
+        if (event == Json::parse_event_t::key && !open_.back().insert(parsed.get<std::string>()).second)
+            fail(ErrorKind::format, place_, "each key once", "the key " + shown(parsed) + " twice",
+                 "remove one of them");
+        return true;
+    }
+
+private:
+    std::string place_;
+    std::vector<std::set<std::string>> open_;  // keys of the objects that are being read
+};
+
+Json parse_strict(std::string_view text, const std::string& place) {
+    DuplicateKeys duplicates(place);
+    try {
+        return Json::parse(text.begin(), text.end(), [&](int, Json::parse_event_t event, const Json& parsed) {
+            return duplicates(event, parsed);
+        });
+    } catch (const Json::parse_error& error) {
+        const std::string what = error.what();
+        const std::size_t detail = what.find("syntax error");
+        fail(ErrorKind::format, position_of(text, error.byte, place), "JSON",
+             detail == what.npos ? what : what.substr(detail),
+             "check quotes, commas and brackets there; NaN and Infinity are no JSON numbers");
+    } catch (const Json::out_of_range& error) {
+        fail(ErrorKind::format, place, "numbers that float64 can hold", error.what(), "use a smaller number");
+    }
+}
+
+double number(const Json& value, const std::string& place) {
+    if (!value.is_number()) fail(ErrorKind::format, place, "a number", shown(value), "write a number there");
+    return value.get<double>();
+}
+
+// `layout` names the numbers of a node, as "[s, r, g, b]".
+template <std::size_t N>
+std::vector<std::array<double, N>> read_nodes(const Json& list, const std::string& place, const std::string& layout) {
+    if (!list.is_array()) fail(ErrorKind::format, place, "a list of " + layout, shown(list), "write a list of nodes");
+    std::vector<std::array<double, N>> nodes;
+    for (const Json& item : list) {
+        const std::string here = element(place, nodes.size());
+        if (!item.is_array() || item.size() != N)
+            fail(ErrorKind::format, here, layout, shown(item), "give each node " + std::to_string(N) + " numbers");
+        std::array<double, N>& node = nodes.emplace_back();
+        for (std::size_t k = 0; k < N; ++k)
+            node[k] = number(item[k], element(here, k));
+    }
+    return nodes;
+}
+
+std::vector<ColorNode> color_nodes(const std::vector<std::array<double, 4>>& numbers) {
+    std::vector<ColorNode> nodes;
+    for (const auto& [s, r, g, b] : numbers)
+        nodes.push_back({s, {r, g, b}});
+    return nodes;
+}
+
+// The value named by the word under `key`; the first of `names` when the key is absent.
+template <class Value>
+Value choice(const Json& object, const std::string& key, const std::string& place,
+             const std::vector<std::pair<std::string, Value>>& names) {
+    const auto entry = object.find(key);
+    if (entry == object.end()) return names.front().second;
+    const std::string here = place + ": " + key;
+    std::string known;
+    std::vector<std::string> words;
+    for (const auto& [name, value] : names) {
+        if (*entry == name) return value;
+        known += (known.empty() ? "\"" : " or \"") + name + "\"";
+        words.push_back(name);
+    }
+    if (!entry->is_string()) fail(ErrorKind::format, here, known, shown(*entry), "write one of these words");
+    fail(ErrorKind::option, here, known, shown(*entry),
+         "did you mean \"" + nearest_name(entry->get<std::string>(), words) + "\"?");
+}
+
+const Json& require(const Json& object, const std::string& key, const std::string& place, const std::string& advice) {
+    const auto entry = object.find(key);
+    if (entry == object.end()) fail(ErrorKind::format, place, "the key \"" + key + "\"", "none", advice);
+    return *entry;
+}
+
+std::vector<ExtinctionNode> read_extinction(const Json& object, const std::string& place) {
+    for (const char* key : {"unit_distance", "opacity_convention"})
+        if (object.contains(key))
+            fail(ErrorKind::format, place, "\"" + std::string(key) + "\" only together with \"opacity\"",
+                 "it beside \"extinction\"", "remove it: extinction is per mesh unit already");
+    std::vector<ExtinctionNode> nodes;
+    for (const auto& [s, tau] : read_nodes<2>(object["extinction"], place + ": extinction", "[s, tau]"))
+        nodes.push_back({s, tau});
+    return nodes;
+}
+
+std::vector<ExtinctionNode> read_opacity(const Json& object, const std::string& place) {
+    const Json& distance = require(object, "unit_distance", place,
+                                   "add \"unit_distance\": u, the length [mesh units] that the opacities hold for");
+    const auto convention = choice<OpacityConvention>(
+        object, "opacity_convention", place,
+        {{"exponential", OpacityConvention::exponential}, {"linear", OpacityConvention::linear}});
+    std::vector<OpacityNode> nodes;
+    for (const auto& [s, alpha] : read_nodes<2>(object["opacity"], place + ": opacity", "[s, alpha]"))
+        nodes.push_back({s, alpha});
+    return extinction_from_opacity(nodes, number(distance, place + ": unit_distance"), convention, place);
+}
+
+TransferFunction from_object(const Json& object, const std::string& place) {
+    static const std::vector<std::string> known{
+        "model", "color", "extinction", "opacity", "unit_distance", "opacity_convention", "outside"};
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : object.items())
+        keys.push_back(key);
+    require_known_keys(place, keys, known);
+
+    const auto model = choice<OpticalModel>(object, "model", place,
+                                            {{"density", OpticalModel::density}, {"emitter", OpticalModel::emitter}});
+    const auto outside =
+        choice<Outside>(object, "outside", place, {{"clamp", Outside::clamp}, {"transparent", Outside::transparent}});
+    const Json& color = require(object, "color", place, "add \"color\": [[s, r, g, b], …]");
+    const bool has_extinction = object.contains("extinction"), has_opacity = object.contains("opacity");
+    if (has_extinction == has_opacity)
+        fail(ErrorKind::format, place, "either \"extinction\" or \"opacity\"", has_opacity ? "both" : "neither",
+             has_opacity ? "remove one of them" : "add \"extinction\": [[s, tau], …]");
+    return {model, color_nodes(read_nodes<4>(color, place + ": color", "[s, r, g, b]")),
+            has_opacity ? read_opacity(object, place) : read_extinction(object, place), outside, place};
+}
+
+// ParaView's flat list of four numbers a node.
+std::vector<std::array<double, 4>> read_quadruples(const Json& list, const std::string& place) {
+    if (!list.is_array() || list.empty() || list.size() % 4 != 0)
+        fail(ErrorKind::format, place, "a list of 4 numbers for each node", shown(list), "export the colour map again");
+    std::vector<std::array<double, 4>> nodes(list.size() / 4);
+    for (std::size_t k = 0; k < list.size(); ++k)
+        nodes[k / 4][k % 4] = number(list[k], element(place, k));
+    return nodes;
+}
+
+using Interpolation = glm::dvec3 (*)(const glm::dvec3&, const glm::dvec3&, double);
+
+// Nodes between which straight lines in RGB follow a curved interpolation.
+std::vector<ColorNode> resample(const std::vector<ColorNode>& nodes, Interpolation interpolation) {
+    constexpr int steps = 16;
+    std::vector<ColorNode> fine;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        for (int step = 1; i > 0 && step < steps; ++step) {
+            const double t = static_cast<double>(step) / steps;
+            const double s = std::lerp(nodes[i - 1].scalar, nodes[i].scalar, t);
+            if (s > fine.back().scalar && s < nodes[i].scalar)
+                fine.push_back({s, interpolation(nodes[i - 1].color, nodes[i].color, t)});
+        }
+        fine.push_back(nodes[i]);
+    }
+    return fine;
+}
+
+std::vector<ColorNode> paraview_colors(const Json& map, const std::string& place) {
+    std::vector<ColorNode> nodes = color_nodes(read_quadruples(map["RGBPoints"], place + ": RGBPoints"));
+    const auto interpolation = choice<Interpolation>(
+        map, "ColorSpace", place, {{"RGB", nullptr}, {"Lab", interpolate_lab}, {"Diverging", interpolate_diverging}});
+    return interpolation == nullptr ? nodes : resample(nodes, interpolation);
+}
+
+std::vector<ExtinctionNode> paraview_extinction(const Json& map, const std::string& place, double unit_distance) {
+    const Json& points = require(map, "Points", place, "export the colour map together with its opacity points");
+    std::vector<OpacityNode> nodes;
+    for (const auto& [s, alpha, midpoint, sharpness] : read_quadruples(points, place + ": Points")) {
+        if (midpoint != 0.5 || sharpness != 0.0)
+            fail(ErrorKind::data, element(place + ": Points", 4 * nodes.size()),
+                 "midpoint 0.5 and sharpness 0 (straight lines)", shown({midpoint, sharpness}),
+                 "reset midpoint and sharpness in ParaView's opacity editor");
+        nodes.push_back({s, alpha});
+    }
+    const auto added = map.find("unit_distance");
+    const double distance = added == map.end() ? unit_distance : number(*added, place + ": unit_distance");
+    return extinction_from_opacity(nodes, distance, OpacityConvention::exponential, place);
+}
+
+std::string read_text(const std::filesystem::path& file) {
+    const std::string expected = "a readable transfer function (JSON)", advice = "check the path and its permissions";
+    if (std::filesystem::is_directory(file)) fail(ErrorKind::file, file.string(), expected, "a folder", advice);
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) fail(ErrorKind::file, file.string(), expected, std::strerror(errno), advice);
+    std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    if (stream.bad()) fail(ErrorKind::file, file.string(), expected, "a read error", advice);
+    return text;
+}
+
+}  // namespace
+
+TransferFunction parse_transfer_function(std::string_view json, const std::string& place,
+                                         double paraview_unit_distance) {
+    const Json document = parse_strict(json, place);
+    // ParaView exports a list of presets; its other keys (name, creator, colour of NaN …) say nothing about light.
+    const Json& map = document.is_array() && document.size() == 1 ? document[0] : document;
+    if (map.is_object() && map.contains("RGBPoints"))
+        return {OpticalModel::density, paraview_colors(map, place),
+                paraview_extinction(map, place, paraview_unit_distance), Outside::clamp, place};
+    if (!document.is_object())
+        fail(ErrorKind::format, place, "an object {…} or one colour map exported from ParaView", shown(document),
+             "write {\"color\": [[s, r, g, b], …], \"extinction\": [[s, tau], …]}");
+    return from_object(document, place);
+}
+
+TransferFunction read_transfer_function(const std::filesystem::path& file, double paraview_unit_distance) {
+    return parse_transfer_function(read_text(file), file.string(), paraview_unit_distance);
+}
+
+}  // namespace cellproj

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a file says, before it is cut into tetrahedra: cells of any kind over float64 points, and fields.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/tet_mesh.hpp"
+
+namespace cellproj {
+
+// Volume cells, vertices in VTK's order. Other kinds are refused by `read`, with their names and counts.
+enum class CellKind : std::uint8_t { tetrahedron, hexahedron };
+
+const char* to_string(CellKind kind);
+
+// #C cells of mixed kind: the vertices of cell c are vertices[offsets[c] .. offsets[c+1]).
+struct CellList {
+    std::vector<CellKind> kinds;          // #C
+    std::vector<std::uint64_t> offsets;   // #C + 1, first 0
+    std::vector<VertexId> vertices;       // 0-based into Dataset::points
+
+    std::size_t size() const { return kinds.size(); }
+};
+
+// A curvilinear grid: point (i, j, k) is points[i + ni·(j + nj·k)]; every cell is a hexahedron; no CellList is kept.
+struct GridDimensions {
+    std::size_t ni = 0, nj = 0, nk = 0;   // points per direction, each ≥ 2
+
+    std::size_t cells() const { return (ni - 1) * (nj - 1) * (nk - 1); }
+};
+
+struct Dataset {
+    std::string source;                        // the file, for messages
+    std::string format;                        // in words: "VTK XML unstructured grid"
+    std::vector<glm::dvec3> points;            // #P [mesh units]
+    std::optional<GridDimensions> grid;        // set for a curvilinear grid; then `cells` is empty
+    CellList cells;                            // set otherwise
+    std::vector<Field> point_fields;           // each with #P rows
+    std::vector<Field> cell_fields;            // each with one row per cell
+    std::size_t skipped_cells = 0;             // cells that are no volumes: points, lines, surfaces
+
+    std::size_t cell_count() const { return grid ? grid->cells() : cells.size(); }
+};
+
+}  // namespace cellproj

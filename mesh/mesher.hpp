@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Volumes from surfaces, through TetGen. TetGen is AGPL, keeps global state and dies of signals on some bad inputs, so it
+// lives in a program of its own, `cellproj-mesher` (apps/mesher/); this header is the caller's side of the process wall.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/tet_mesh.hpp"
+
+namespace cellproj {
+
+// A region is the part of space around `seed` that facets enclose.
+struct Region {
+    glm::dvec3 seed;
+    double attribute = 0.0;   // becomes the cell field "region"
+    double max_volume = 0.0;  // largest cell in this region [mesh units³]; 0: no bound
+};
+
+// A piecewise-linear complex: planar polygons that meet in common points and edges only.
+struct PiecewiseLinearComplex {
+    std::vector<glm::dvec3> points;                  // #P; points that no facet uses become mesh vertices, too
+    std::vector<std::vector<VertexId>> facets;       // polygons of ≥ 3 points, 0-based
+    std::vector<glm::dvec3> holes;                   // a point in each void to be left empty
+    std::vector<Region> regions;                     // may be empty
+};
+
+struct MesherOptions {
+    double max_volume = 0.0;              // largest cell anywhere [mesh units³]; 0: no bound
+    double radius_edge_ratio = 0.0;       // largest circumradius / shortest edge, e.g. 1.414; 0: no quality refinement
+    double timeout_seconds = 300.0;       // the process is killed after that
+    std::filesystem::path program;        // the mesher; empty: found by `find_mesher`
+};
+
+// The program next to the running one, in ../libexec/cellproj beside it, named by the environment variable
+// CELLPROJ_MESHER (first), or on PATH. Throws Error (environment) when there is none.
+std::filesystem::path find_mesher();
+
+// Meshes the inside of a complex. With regions, the result has the cell field "region". Throws Error (data) for an
+// unusable complex (ids out of range, NaN), Error (mesher) when the process reports a failure, dies of a signal, answers
+// with garbage, produces no cells, or exceeds its time.
+TetMesh tetrahedralize(const PiecewiseLinearComplex& complex, const MesherOptions& options = {});
+
+}  // namespace cellproj

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What cellproj and cellproj-mesher say to each other: one request, one answer, over pipes. Both programs compile this
+// file; it knows nothing of how the other side makes its cells.
+//
+//   message := header, body
+//   header  := magic "cpmesher" (8 bytes), u32 version = 1, u32 kind (1 request, 2 answer), u64 size of the body
+//   [bytes] request := f64 max_volume, f64 radius_edge_ratio, u64 #P, u64 #F, u64 #V, u64 #H, u64 #R,
+//              #P points (3 f64), #F facet sizes (u32, their sum is #V), #V facet vertices (u32, 0-based, facet after
+//              facet), #H holes (3 f64), #R regions (3 f64 seed, f64 attribute, f64 max_volume)
+//   answer  := u64 #P, u64 #T, u64 #A (0 or #T), #P points (3 f64), #T tets (4 u32, 0-based), #A region attributes
+//   (f64)
+//
+// Numbers stand in the byte order of the machine, on which both programs run. Nothing follows the body.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "mesh/mesher.hpp"
+#include "mesh/tet_mesh.hpp"
+
+namespace cellproj {
+
+struct MeshingRequest {
+    PiecewiseLinearComplex complex;
+    double max_volume = 0.0;         // [mesh units³]; 0: no bound
+    double radius_edge_ratio = 0.0;  // 0: no quality refinement
+};
+
+// Throws Error (data), naming `place`: fewer than 4 points or more than the mesher can count, a point, hole or region
+// that is not finite, a facet with fewer than 3 vertices, a vertex id out of range.
+void validate(const PiecewiseLinearComplex& complex, const std::string& place);
+
+std::string encode_request(const PiecewiseLinearComplex& complex, double max_volume, double radius_edge_ratio);
+// Points, cells and, if there is one, the cell field "region"; every other field stays behind.
+std::string encode_answer(const TetMesh& mesh);
+
+// The decoders check magic, version, kind, and every count against the bytes that are there; what the numbers mean
+// (ids, finite points) is left to the two `validate`. Throw Error (mesher), naming `place`.
+MeshingRequest decode_request(std::string_view message, const std::string& place);
+TetMesh decode_answer(std::string_view message, const std::string& place);
+
+// The size of the answer that starts with these bytes: empty while its header is incomplete, 0 when they cannot become
+// an answer.
+std::optional<std::size_t> announced_answer_size(std::string_view start);
+
+}  // namespace cellproj

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The scalar that is drawn: one number per point (linear inside a cell) or per cell (constant inside a cell).
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "mesh/tet_mesh.hpp"
+
+namespace cellproj {
+
+enum class FieldLocation { points, cells };
+
+struct ScalarField {
+    std::string name;                 // as the user would type it
+    FieldLocation location = FieldLocation::points;
+    std::vector<double> values;       // #P or #T; may hold NaN and infinities
+
+    double at(const TetMesh& mesh, CellId cell, int corner) const {
+        return location == FieldLocation::points ? values[mesh.tets[cell][static_cast<std::size_t>(corner)]]
+                                                 : values[cell];
+    }
+};
+
+// The field called `name`, point fields before cell fields; a vector or tensor gives its magnitude (root of the sum of
+// squares). Without an exact match, a match that differs in upper and lower case only is taken if it is the only one.
+// An empty name chooses the first scalar point field, then the first scalar cell field, then the first field of all.
+// Throws Error (option) when there is no such field (the message lists those that exist), Error (data) when there is none
+// at all. `place` names the file in messages.
+ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const std::string& place);
+
+// A field as a scalar: itself if it has one component, else the magnitude of each row.
+ScalarField as_scalar(const Field& field, FieldLocation location);
+
+struct ScalarRange {
+    double low = 0.0;
+    double high = 0.0;
+    std::size_t not_finite = 0;  // values left out: NaN and infinities
+};
+
+// Smallest and largest finite value; 0..0 when there is none.
+ScalarRange range(const std::vector<double>& values);
+
+// The value below which the fraction `share` (0..1) of the finite values lies; 0 when there is none.
+double quantile(const std::vector<double>& values, double share);
+
+}  // namespace cellproj

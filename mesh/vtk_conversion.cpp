@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/vtk_conversion.hpp"
+
+#include <vtkAlgorithm.h>
+#include <vtkDataArray.h>
+#include <vtkLogger.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+#include <vtkPoints.h>
+#include <vtkSmartPointer.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <exception>
+#include <fstream>
+#include <mutex>
+#include <system_error>
+
+#include "mesh/error.hpp"
+
+namespace cellproj {
+
+namespace {
+
+// Keeps the first error and drops the rest. A "generic warning" is an error here: that is how the legacy reader tells
+// that the data of an array ended too early. Other warnings are about what does not matter (keys of modules not
+// linked).
+class FirstError : public vtkOutputWindow {
+public:
+    static FirstError* New();
+    vtkTypeMacro(FirstError, vtkOutputWindow)
+
+        void DisplayText(const char*) override {}
+    void DisplayErrorText(const char* text) override {
+        if (message.empty()) message = text;
+    }
+    void DisplayGenericWarningText(const char* text) override { DisplayErrorText(text); }
+    void DisplayWarningText(const char*) override {}
+    void DisplayDebugText(const char*) override {}
+
+    std::string message;
+};
+
+vtkStandardNewMacro(FirstError)
+
+    // While one lives, VTK's messages go to a FirstError. VTK sends each to its output window and to its log; the log's
+    // threshold can be asked for only as the loosest of all log sinks, which is what is put back.
+    class CapturedMessages {
+public:
+    CapturedMessages()
+        : lock_(mutex()), window_(vtkOutputWindow::GetInstance()), verbosity_(vtkLogger::GetCurrentVerbosityCutoff()) {
+        vtkOutputWindow::SetInstance(captured_);
+        vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+    }
+    ~CapturedMessages() {
+        vtkLogger::SetStderrVerbosity(verbosity_);
+        vtkOutputWindow::SetInstance(window_);
+    }
+    CapturedMessages(const CapturedMessages&) = delete;
+    CapturedMessages& operator=(const CapturedMessages&) = delete;
+
+    const std::string& first_error() const { return captured_->message; }
+
+private:
+    static std::mutex& mutex() {
+        static std::mutex only;
+        return only;
+    }
+
+    std::lock_guard<std::mutex> lock_;
+    vtkSmartPointer<vtkOutputWindow> window_;
+    vtkLogger::Verbosity verbosity_;
+    vtkNew<FirstError> captured_;
+};
+
+// "ERROR: In FILE, line N\nvtkClass (0x…): what is wrong\n\n" → "what is wrong", its first line.
+std::string shortened(const std::string& message) {
+    constexpr std::size_t longest = 200;
+    const std::size_t place_end = message.find('\n');
+    const std::size_t object_end = message.find("): ");
+    std::size_t begin = place_end == std::string::npos ? 0 : place_end + 1;
+    if (object_end != std::string::npos) begin = object_end + 3;
+    const std::string line = message.substr(begin, message.find('\n', begin) - begin);
+    return printable(line.size() <= longest ? line : line.substr(0, longest) + "...");
+}
+
+[[noreturn]] void throw_unreadable(const std::filesystem::path& file, const std::string& message) {
+    throw Error({.kind = ErrorKind::format,
+                 .place = file.string(),
+                 .expected = "a complete and well-formed file",
+                 .found = "what VTK's reader calls \"" + shortened(message) + "\"",
+                 .advice = "the file may be cut off or damaged: write or copy it again"});
+}
+
+template <class RowOf>
+Field gather_rows(vtkDataArray& array, const std::string& name, std::size_t count, RowOf row_of) {
+    const auto components = static_cast<std::size_t>(array.GetNumberOfComponents());
+    Field field{name, array.GetNumberOfComponents(), std::vector<double>(count * components)};
+    for (std::size_t i = 0; i < count; ++i)
+        array.GetTuple(row_of(i), field.values.data() + i * components);
+    return field;
+}
+
+}  // namespace
+
+void update(vtkAlgorithm& reader, const std::filesystem::path& file) {
+    const CapturedMessages messages;
+    try {
+        reader.Update();
+    } catch (const std::exception& exception) {
+        throw_unreadable(file, messages.first_error().empty() ? exception.what() : messages.first_error());
+    }
+    if (!messages.first_error().empty()) throw_unreadable(file, messages.first_error());
+}
+
+void require_readable(const std::filesystem::path& file) {
+    const auto fail = [&](ErrorKind kind, const std::string& found, const std::string& advice) {
+        throw Error({.kind = kind, .place = file.string(), .expected = "a file", .found = found, .advice = advice});
+    };
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) {
+        fail(ErrorKind::file, error ? error.message() : "nothing there", "check the path");
+    }
+    if (std::filesystem::is_directory(status)) fail(ErrorKind::file, "a folder", "name a file in it");
+    if (!std::filesystem::is_regular_file(status)) {
+        fail(ErrorKind::file, "something that is no regular file", "name a file on disk");
+    }
+    if (!std::ifstream(file, std::ios::binary)) {
+        fail(ErrorKind::file, "one that cannot be opened for reading", "check its permissions");
+    }
+    if (std::filesystem::file_size(file) == 0) {
+        fail(ErrorKind::format, "an empty one (0 bytes)", "write or copy it again");
+    }
+}
+
+std::string printable(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return std::isprint(c) == 0; }, '.');
+    return text;
+}
+
+std::string read_bytes(const std::filesystem::path& file, std::uint64_t offset, std::size_t count) {
+    std::ifstream stream(file, std::ios::binary);
+    stream.seekg(static_cast<std::streamoff>(offset));
+    std::string bytes(count, '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(count));
+    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+    return bytes;
+}
+
+std::vector<glm::dvec3> to_points(vtkPoints& points, const std::filesystem::path& file) {
+    const auto count = static_cast<std::size_t>(points.GetNumberOfPoints());
+    if (count > max_elements) {
+        throw Error({.kind = ErrorKind::data,
+                     .place = file.string(),
+                     .expected = "at most " + std::to_string(max_elements) + " points (ids have 32 bits)",
+                     .found = std::to_string(count),
+                     .advice = "cut the data into parts"});
+    }
+    std::vector<glm::dvec3> result(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        glm::dvec3& p = result[i];
+        points.GetPoint(static_cast<vtkIdType>(i), &p.x);
+        if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+        throw Error({.kind = ErrorKind::data,
+                     .place = file.string() + ", point " + std::to_string(i),
+                     .expected = "finite coordinates",
+                     .found = "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")",
+                     .advice = "look for the program that wrote it: no cell can be drawn there"});
+    }
+    return result;
+}
+
+Field to_field(vtkDataArray& array, const std::string& name, std::span<const std::uint64_t> rows) {
+    return gather_rows(array, name, rows.size(), [&](std::size_t i) { return static_cast<vtkIdType>(rows[i]); });
+}
+
+Field to_field(vtkDataArray& array, const std::string& name) {
+    const auto rows = static_cast<std::size_t>(array.GetNumberOfTuples());
+    return gather_rows(array, name, rows, [](std::size_t i) { return static_cast<vtkIdType>(i); });
+}
+
+}  // namespace cellproj

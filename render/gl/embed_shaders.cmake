@@ -1,0 +1,10 @@
+# Writes OUTPUT, a C++ file that defines the strings of shaders.hpp: one per file of SHADERS (a list), dots become underscores.
+set(text "#include \"render/gl/shaders.hpp\"\nnamespace cellproj::gl::shaders {\n")
+foreach(file IN LISTS SHADERS)
+  get_filename_component(name ${file} NAME)
+  string(REPLACE "." "_" name ${name})
+  file(READ ${file} source)
+  string(APPEND text "const std::string ${name} = R\"glsl(${source})glsl\";\n")
+endforeach()
+string(APPEND text "}  // namespace cellproj::gl::shaders\n")
+file(WRITE ${OUTPUT} "${text}")

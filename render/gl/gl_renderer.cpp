@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/gl/gl_renderer.hpp"
+
+#include <glad/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "render/gl/shaders.hpp"
+
+namespace cellproj::gl {
+
+namespace {
+
+// Large enough that the driver's work per flush (loading and storing the target) is small beside the drawing, small
+// enough that projection and drawing overlap.
+constexpr std::size_t cells_per_chunk = 16384;
+
+// The context must be current before the members that are OpenGL objects are made.
+OsmesaContext current(OsmesaContext context) {
+    context.make_current();
+    return context;
+}
+
+}  // namespace
+
+GlRenderer::GlRenderer(OsmesaContext context)
+    : context_(current(std::move(context))),
+      parallel_(shaders::cell_vert, shaders::preintegrated_frag, ""),
+      perspective_(shaders::cell_vert, shaders::preintegrated_frag, "#define PERSPECTIVE\n") {}
+
+// The OpenGL objects below are deleted in their own context, whatever is current now.
+GlRenderer::~GlRenderer() { context_.make_current(); }
+
+Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality,
+                         Statistics* out) {
+    Statistics statistics;
+    const Stopwatch total;
+    validate(camera, "camera");
+    validate(size, "size");
+    context_.make_current();
+    prepare(scene, quality);
+    if (target_.size().width != size.width || target_.size().height != size.height) target_ = FloatTarget(size);
+    statistics.ms.plan = total.ms();
+
+    const Stopwatch sort;
+    OrderReport order_report;
+    const auto order = prepared_->sorter().order(camera.viewpoint(), &order_report);
+    statistics.ms.sort = sort.ms();
+
+    const Stopwatch transform;
+    const CellStream cells(*prepared_, camera, size);
+    statistics.ms.project = transform.ms();
+    target_.clear_and_bind();
+    const Program& program = cells.transform().perspective() ? perspective_ : parallel_;
+    set_uniforms(program, cells.transform());
+    program.use();
+    draw(cells, order, statistics);
+
+    const Stopwatch read_back;
+    Image image = target_.read();
+    check_errors("drawing");
+    statistics.ms.read_back = read_back.ms();
+    statistics.ms.total = total.ms();
+
+    statistics.counts.cells = scene.mesh->tets.size();
+    statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
+    statistics.counts.unordered = order_report.unordered;
+    statistics.method = "preint3d:" + std::to_string(quality.table_size);
+    statistics.backend = "gl_osmesa";
+    statistics.backend_version = driver_version();
+    statistics.order = "mpvo";
+    if (out) *out = std::move(statistics);
+    return image;
+}
+
+// Brings what depends on the scene and the quality up to date; usually there is nothing to do.
+void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
+    const bool same_cells =
+        prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field;
+    const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
+    if (!same_cells) {
+        prepared_.emplace(scene);
+    } else if (!same_transfer) {
+        prepared_->set_transfer(scene.transfer);
+    }
+    if (same_transfer && table_ && table_->size() == quality.table_size) return;
+
+    const SceneUnits& units = prepared_->units();
+    // No segment is longer than the diagonal of the box.
+    table_.emplace(*scene.transfer, TableDomain{units.scalar_low, units.scalar_high, 2 * units.length},
+                   quality.table_size);
+    // Emission and extinction per mesh unit become those per unit of length of the scene.
+    std::vector<float> texels(table_->texels().size());
+    std::transform(table_->texels().begin(), table_->texels().end(), texels.begin(),
+                   [&](float x) { return static_cast<float>(x * units.length); });
+    table_texture_ = Texture3d(quality.table_size, texels);
+}
+
+void GlRenderer::set_uniforms(const Program& program, const ScreenTransform& transform) const {
+    const double length_scale = table_->length_scale() / prepared_->units().length;
+    const double longest = table_->domain().max_length / prepared_->units().length;
+    program.set("table_size", static_cast<float>(table_->size()));
+    program.set("inverse_length_scale", static_cast<float>(1.0 / length_scale));
+    program.set("inverse_log_range", static_cast<float>(1.0 / std::log2(1.0 + longest / length_scale)));
+    if (!transform.perspective()) return;
+    const glm::dvec2 center = transform.principal_point();
+    program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
+    program.set("pixels_per_unit", static_cast<float>(transform.pixels_per_unit()));
+}
+
+void GlRenderer::draw(const CellStream& cells, std::span<const CellId> order, Statistics& statistics) {
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // associated colours, back to front
+    glBindTextureUnit(0, table_texture_.name());
+    TriangleBatch batch;
+    for (std::size_t begin = 0; begin < order.size(); begin += cells_per_chunk) {
+        const Stopwatch project;
+        batch.clear();
+        cells.project(order.subspan(begin, std::min(cells_per_chunk, order.size() - begin)), batch);
+        statistics.ms.project += project.ms();
+
+        const Stopwatch draw;
+        stream_.draw(batch);
+        statistics.ms.draw += draw.ms();
+        statistics.counts.drawn += batch.drawn_cells;
+        statistics.counts.triangles += batch.indices.size() / 3;
+    }
+    const Stopwatch finish;
+    glFinish();
+    statistics.ms.draw += finish.ms();
+}
+
+}  // namespace cellproj::gl

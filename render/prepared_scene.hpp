@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What every backend needs of a scene and no view changes: its units, which cells can be seen at all, and the order's graph.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/scene.hpp"
+#include "sort/visibility_sorter.hpp"
+
+namespace cellproj {
+
+// Lengths and scalars inside a renderer are relative, so that float32 serves meshes and fields of any scale.
+struct SceneUnits {
+    double length;       // half the diagonal of the mesh's box [mesh units], > 0
+    double scalar_low;   // the field's smallest finite value
+    double scalar_high;  // the field's largest finite value
+
+    // 0 at scalar_low, 1 at scalar_high; 0 for a constant field.
+    double normalized(double s) const {
+        return scalar_high > scalar_low ? (s - scalar_low) / (scalar_high - scalar_low) : 0.0;
+    }
+};
+
+class PreparedScene {
+public:
+    // Throws Error (data) when the field does not fit the mesh or has no finite value.
+    explicit PreparedScene(Scene scene);
+
+    const Scene& scene() const { return scene_; }
+    const SceneUnits& units() const { return units_; }
+    VisibilitySorter& sorter() { return sorter_; }
+
+    // visible()[cell] is 0 for cells that add nothing to any picture: no emission and no extinction over the range of
+    // their scalars, or a scalar that is not finite.
+    const std::vector<std::uint8_t>& visible() const { return visible_; }
+
+    // Another transfer function over the same mesh and field: only the visibility is found anew.
+    void set_transfer(std::shared_ptr<const TransferFunction> transfer);
+
+private:
+    Scene scene_;
+    SceneUnits units_;
+    VisibilitySorter sorter_;
+    std::vector<std::uint8_t> visible_;
+};
+
+}  // namespace cellproj

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Scene and camera to picture.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "project/camera.hpp"
+#include "render/image.hpp"
+#include "render/scene.hpp"
+#include "render/statistics.hpp"
+
+namespace cellproj {
+
+// The speed–accuracy choices of one picture.
+struct Quality {
+    int table_size = 64;  // texels per axis of the pre-integration table, 2 .. 256
+};
+
+// A renderer keeps what does not depend on the view (adjacency, table, visibility of cells) for the scene it drew last: a
+// second picture of the same scene is cheaper. Not thread-safe: one thread at a time.
+class Renderer {
+public:
+    virtual ~Renderer() = default;
+
+    // The associated picture, over nothing: the background is added when it is written. Throws Error (option) for an
+    // unusable camera or size, Error (environment) when the driver fails.
+    virtual Image render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality = {},
+                         Statistics* statistics = nullptr) = 0;
+};
+
+enum class Backend {
+    gl_osmesa  // OpenGL 4.5 core on the CPU, off screen: needs no display and no GPU
+};
+
+struct RendererOptions {
+    std::string osmesa_library = "libOSMesa.so.8";  // name or path, loaded when the renderer is made
+};
+
+// Throws Error (environment) when the backend is not available here; the message names the package to install.
+std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options = {});
+
+}  // namespace cellproj

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a picture cost: times per stage and counts, with the stable JSON keys that others read.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cellproj {
+
+// Milliseconds since construction.
+class Stopwatch {
+public:
+    double ms() const {
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// One picture. Stages overlap (projection feeds the drawing), so `total` is less than their sum can be; it is the frame from camera to
+// pixels in memory.
+struct Statistics {
+    struct {
+        double plan = 0, sort = 0, project = 0, draw = 0, read_back = 0, total = 0, write = 0;
+    } ms;
+    struct {
+        std::size_t cells = 0;      // in the mesh
+        std::size_t culled = 0;     // not drawn: invisible, outside the view, between pixel centres, values not finite
+        std::size_t drawn = 0;
+        std::size_t triangles = 0;
+        std::size_t unordered = 0;  // cells that the sorter could only order by depth
+        std::optional<std::size_t> order_violations;  // face neighbours the wrong way round, when counted
+    } counts;
+    std::string method;           // of integration: "preint3d:64"
+    std::string backend;          // "gl_osmesa"
+    std::string backend_version;  // what the driver says of itself
+    std::string order;            // method of sorting: "mpvo"
+    std::optional<double> error;  // measured error, when it was measured
+};
+
+struct RunStatistics {
+    struct {
+        double read = 0, tetrahedralize = 0, prepare = 0;
+    } once_ms;
+    std::vector<Statistics> pictures;
+    std::size_t peak_memory_bytes = 0;
+};
+
+// Largest resident set of this process so far [bytes].
+std::size_t peak_memory_bytes();
+
+// The JSON of the design; what was not measured is null.
+std::string to_json(const RunStatistics& run);
+
+}  // namespace cellproj

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# check_package.sh BUILD_DIR SOURCE_DIR: does another project get along with cellproj? Installs the build into a temporary
+# prefix and builds and runs tests/package against it, then against the source tree as a sub-directory.
+# Exits 77 ("skipped") for a sanitized build, whose libraries need the sanitizers in every program.
+set -euo pipefail
+build=$(realpath "$1")
+source=$(realpath "$2")
+
+fail() {
+    echo "check_package: $*" >&2
+    exit 1
+}
+
+if grep -q '^CELLPROJ_SANITIZE:BOOL=ON$' "$build/CMakeCache.txt"; then
+    echo "check_package: skipped, $build is built with sanitizers"
+    exit 77
+fi
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+prefix=$scratch/prefix
+
+# Runs a command and shows what it said only when it fails.
+quietly() { "$@" >"$scratch/log" 2>&1 || { cat "$scratch/log" >&2; fail "failed: $*"; }; }
+
+# consumer NAME [-DOPTION…]: configures, builds and runs the consumer.
+consumer() {
+    local folder=$scratch/$1
+    shift
+    quietly cmake -S "$source/tests/package" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
+    quietly cmake --build "$folder" --target consumer
+    local said
+    said=$("$folder/consumer") || fail "the consumer in $folder failed"
+    [ "$said" = "order: 0" ] || fail "expected \"order: 0\", found \"$said\""
+}
+
+echo "check_package: installing $build"
+quietly cmake --install "$build" --prefix "$prefix"
+# A package that names the tree it came from works on this machine only.
+if grep -rlF -e "$source" -e "$build" --include='*.cmake' "$prefix"; then
+    fail "the files above name the source or build tree"
+fi
+
+echo "check_package: a consumer of the installed package"
+consumer installed -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
+grep -q "^cellproj_DIR:PATH=$prefix/" "$scratch/installed/CMakeCache.txt" || fail "another cellproj was found"
+
+echo "check_package: a consumer of the source tree, without VTK and mesher"
+consumer subdirectory -DCELLPROJ_TREE="$source" -DCELLPROJ_WITH_VTK=OFF -DCELLPROJ_WITH_MESHER=OFF
+! [ -e "$scratch/subdirectory/cellproj/tests" ] || fail "tests are configured inside another project"
+echo "check_package: good"

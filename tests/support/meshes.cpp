@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/support/meshes.hpp"
+
+#include <random>
+
+#include "mesh/mesher.hpp"
+#include "mesh/tetrahedralize.hpp"
+
+namespace cellproj::testing_support {
+
+TetMesh unit_tet() {
+    TetMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.tets = {{0, 1, 2, 3}};
+    return mesh;
+}
+
+TetMesh grid_mesh(int n, double jitter, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> offset(-jitter / n, jitter / n);
+    Dataset dataset;
+    const auto side = static_cast<std::size_t>(n) + 1;
+    dataset.grid = GridDimensions{side, side, side};
+    for (int k = 0; k <= n; ++k) {
+        for (int j = 0; j <= n; ++j) {
+            for (int i = 0; i <= n; ++i) {
+                glm::dvec3 p = glm::dvec3(i, j, k) / static_cast<double>(n);
+                const bool inner = i > 0 && i < n && j > 0 && j < n && k > 0 && k < n;
+                if (jitter > 0 && inner) p += glm::dvec3(offset(random), offset(random), offset(random));
+                dataset.points.push_back(p);
+            }
+        }
+    }
+    return tetrahedralize(dataset);
+}
+
+TetMesh delaunay_mesh(int points, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> inside(0.001, 0.999);
+    PiecewiseLinearComplex complex;
+    for (int corner = 0; corner < 8; ++corner) complex.points.emplace_back(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    for (int i = 0; i < points; ++i) {
+        const double x = inside(random), y = inside(random), z = inside(random);
+        complex.points.emplace_back(x, y, z);
+    }
+    complex.facets = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+    return tetrahedralize(complex);
+}
+
+ScalarField point_field(const TetMesh& mesh, const std::function<double(const glm::dvec3&)>& f) {
+    ScalarField field{"f", FieldLocation::points, {}};
+    for (const glm::dvec3& p : mesh.points) field.values.push_back(f(p));
+    return field;
+}
+
+}  // namespace cellproj::testing_support

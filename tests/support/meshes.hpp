@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Meshes for tests and benchmarks, by property. All are positively oriented; all random ones come from their seed alone.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/scalar_field.hpp"
+#include "mesh/tet_mesh.hpp"
+
+namespace cellproj::testing_support {
+
+// One positively oriented tetrahedron: the origin and the unit points of the axes.
+TetMesh unit_tet();
+
+// The unit cube [0, 1]³ in n³ boxes of five tetrahedra each. Convex. With `jitter` > 0 inner points move by up to that
+// fraction of a box's edge, at random (0.2 keeps every cell positive).
+TetMesh grid_mesh(int n, double jitter = 0.0, std::uint64_t seed = 1);
+
+// The Delaunay tetrahedralization of the corners of the unit cube and `points` random points inside, by the mesher. Convex
+// and acyclic from every eye (Edelsbrunner 1990). About 6.5 cells per point. Throws Error where there is no mesher.
+TetMesh delaunay_mesh(int points, std::uint64_t seed = 1);
+
+// f at every point.
+ScalarField point_field(const TetMesh& mesh, const std::function<double(const glm::dvec3&)>& f);
+
+}  // namespace cellproj::testing_support
