@@ -10,7 +10,7 @@ echo "demo: checking packages"
 apps/setup.sh
 apps/build.sh release cellproj_programs
 
-program=build/release/apps/cellproj/cellproj
+program=build/release/bin/cellproj
 echo "demo: rendering the flow around a sphere"
 "$program" render demo:sphere -o demo.png
 

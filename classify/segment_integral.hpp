@@ -16,11 +16,11 @@ namespace cellproj {
 double mean_extinction(const TransferFunction& transfer, double s_f, double s_b);
 
 // The segment is cut at the breakpoints of the transfer function, between which q and τ are polynomials, and again into
-// parts of optical depth ≤ 1, where an eight-point Gauss–Legendre rule is exact to 1e-14 of its value (opacity: exact
-// in closed form). It stops where the rest contributes less than the absolute `tolerance` ≥ 0 to a colour channel.
-// tests/segment_integral_test.cpp holds it to closed forms. Cost: O(log nodes + nodes between s_f and s_b), whatever
-// the optical depth. 0 ≤ l ≤ 1e150 [mesh units], |s_f|, |s_b| ≤ 1e150, equal or in any order; l = 0 gives nothing.
-// Optical depths to 1e8 and beyond.
+// parts of optical depth ≤ 1/2, where an eight-point Gauss–Legendre rule is exact to 1e-15 (opacity: exact in closed
+// form). It stops where the transmittance, and what the rest can contribute to a colour channel, are both below the
+// absolute `tolerance` ≥ 0. tests/segment_integral_test.cpp holds it to closed forms.
+// 0 ≤ l ≤ 1e150 [mesh units], |s_f|, |s_b| ≤ 1e150, equal or in any order; l = 0 gives nothing. Optical depths to 1e8
+// and beyond. Cost: O(log nodes + nodes between s_f and s_b), whatever the optical depth.
 Light integrate_segment(const TransferFunction& transfer, double s_f, double s_b, double length,
                         double tolerance = 1e-10);
 

@@ -136,6 +136,7 @@ void require_valid(const std::vector<OpacityNode>& nodes, const std::string& pla
 
 std::vector<double> scalars_of(const std::vector<ColorNode>& color, const std::vector<ExtinctionNode>& extinction) {
     std::vector<double> scalars;
+    scalars.reserve(color.size() + extinction.size());
     for (const ColorNode& node : color)
         scalars.push_back(node.scalar);
     for (const ExtinctionNode& node : extinction)
@@ -249,9 +250,9 @@ std::vector<ExtinctionNode> extinction_from_opacity(const std::vector<OpacityNod
     const auto depth = [&](std::size_t i) { return -std::log1p(-alpha(i)); };
     for (std::size_t i = 0; i < opacity.size(); ++i) {
         const double s = opacity[i].scalar;
-        const double steps = i == 0 ? 0.0 : std::ceil(std::abs(depth(i) - depth(i - 1)) / longest_step);
-        for (double step = 1.0; step < steps; ++step) {
-            const double d = interpolate(depth(i - 1), depth(i), step / steps);
+        const int steps = i == 0 ? 0 : static_cast<int>(std::ceil(std::abs(depth(i) - depth(i - 1)) / longest_step));
+        for (int step = 1; step < steps; ++step) {
+            const double d = interpolate(depth(i - 1), depth(i), static_cast<double>(step) / steps);
             const double t = (-std::expm1(-d) - alpha(i - 1)) / (alpha(i) - alpha(i - 1));
             const double inserted = std::lerp(opacity[i - 1].scalar, s, t);
             if (inserted > nodes.back().scalar && inserted < s) nodes.push_back({inserted, d / unit_distance});

@@ -107,6 +107,7 @@ std::vector<std::array<double, N>> read_nodes(const Json& list, const std::strin
 
 std::vector<ColorNode> color_nodes(const std::vector<std::array<double, 4>>& numbers) {
     std::vector<ColorNode> nodes;
+    nodes.reserve(numbers.size());
     for (const auto& [s, r, g, b] : numbers)
         nodes.push_back({s, {r, g, b}});
     return nodes;

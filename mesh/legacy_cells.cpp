@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <cstdlib>
 #include <optional>
 #include <string_view>
 
@@ -62,30 +61,32 @@ bool counts_add_up(IntegerReader integers, std::int64_t cells, std::int64_t size
     return left == 0;
 }
 
-bool is_binary(std::string_view bytes) {
-    const std::size_t title = bytes.find('\n');
-    const std::size_t encoding = title == std::string_view::npos ? title : bytes.find('\n', title + 1);
-    return encoding != std::string_view::npos &&
-           (bytes.substr(encoding + 1, 1) == "B" || bytes.substr(encoding + 1, 1) == "b");
+// Where the third line starts, ASCII or BINARY; the first two are the version and a title of any text.
+std::size_t encoding_line(std::string_view bytes) {
+    const std::size_t version_end = std::min(bytes.find('\n'), bytes.size());
+    const std::size_t title_end = std::min(bytes.find('\n', version_end + 1), bytes.size() - 1);
+    return title_end + 1;
 }
 
 }  // namespace
 
 void require_sound_legacy_cells(const std::filesystem::path& file) {
-    constexpr std::string_view version_before = "# vtk DataFile Version ";
     const std::string content = read_bytes(file, 0, std::filesystem::file_size(file));
     const std::string_view bytes(content);
-    // From version 5 on, offsets and ids are two arrays, which the reader leaves to be checked afterwards.
-    if (bytes.size() > version_before.size() && std::atoi(content.c_str() + version_before.size()) >= 5) return;
-    const std::size_t keyword = bytes.find("\nCELLS ");
+    const std::size_t encoding = encoding_line(bytes);
+    const bool binary = bytes.substr(encoding).starts_with('B') || bytes.substr(encoding).starts_with('b');
+    const std::size_t upper = bytes.find("\nCELLS", encoding);
+    const std::size_t keyword = upper != std::string_view::npos ? upper : bytes.find("\ncells", encoding);
     if (keyword == std::string_view::npos) return;
     const std::size_t line = keyword + 1;
     const std::size_t line_end = std::min(bytes.find('\n', line), bytes.size() - 1);
-    IntegerReader header(bytes.substr(line + 6, line_end - line - 6), false);
+    const std::string_view block = bytes.substr(line_end + 1);
+    // From version 5 on, offsets and ids are two arrays, which the reader leaves to be checked afterwards.
+    if (bytes.starts_with("# vtk DataFile Version 5.") && block.starts_with("OFFSETS")) return;
+    IntegerReader header(bytes.substr(line + 5, line_end - line - 5), false);
     const auto cells = header.next();
     const auto size = header.next();
-    const IntegerReader list(bytes.substr(line_end + 1), is_binary(bytes));
-    if (cells && size && *cells >= 0 && counts_add_up(list, *cells, *size)) return;
+    if (cells && size && *cells >= 0 && counts_add_up({block, binary}, *cells, *size)) return;
     throw Error({.kind = ErrorKind::format,
                  .place = file.string() + ", the block CELLS at byte " + std::to_string(line),
                  .expected = "groups of a vertex count and as many point ids that fill the stated size",

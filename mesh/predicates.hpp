@@ -4,7 +4,7 @@
 // almost always, exact arithmetic (CGAL's Mpzf) answers the rest. Meshing, sorting and projection therefore agree.
 //
 // Conventions: right-handed coordinates. A tetrahedron (a, b, c, d) is positively oriented when det(b−a, c−a, d−a) > 0,
-// that is, when a, b, c appear counter-clockwise from the side opposite to d, and clockwise from d.
+// that is, when a, b, c appear counter-clockwise from d.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -27,7 +27,7 @@ struct Eye {
 int orientation(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d);
 
 // Side of the plane through a, b, c on which the eye lies: the sign of det(b−a, c−a, e − w·a), e the eye. One rule for
-// perspective and parallel views. +1 is the side from which a, b, c appear clockwise (the side of a positively oriented
+// perspective and parallel views. +1 is the side from which a, b, c appear counter-clockwise (the side of a positively oriented
 // fourth vertex). 0: the plane is edge-on, or the triangle is degenerate. Exact as `orientation`.
 int side_of_plane(const Eye& eye, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 

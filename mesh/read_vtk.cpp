@@ -20,6 +20,7 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "mesh/error.hpp"
 #include "mesh/read.hpp"
@@ -46,12 +47,13 @@ bool is_vtk_legacy(std::string_view head) {
 // The value of the attribute `type` of the element <VTKFile …>; empty when it has none.
 std::string xml_dataset_type(std::string_view head) {
     const std::string_view from = head.substr(head.find("<VTKFile"));
-    const std::string_view element = from.substr(0, from.find('>'));
-    const std::size_t name = element.find(" type=");
-    if (name == std::string_view::npos || name + 6 >= element.size()) return "";
-    const std::string_view quoted = element.substr(name + 6);
-    const std::string_view value = quoted.substr(1);
-    return std::string(value.substr(0, value.find(quoted[0])));
+    std::string element(from.substr(0, from.find('>')));
+    std::replace_if(
+        element.begin(), element.end(), [](unsigned char c) { return std::isspace(c) != 0; }, ' ');
+    const std::size_t name = element.find(" type=");  // the blank keeps header_type out
+    if (name == std::string::npos || name + 6 >= element.size()) return "";
+    const std::size_t value = name + 7;
+    return element.substr(value, element.find(element[name + 6], value) - value);
 }
 
 // The word behind DATASET, in upper case; empty when there is none. Lines: version, title (any text), ASCII or BINARY.

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "mesh/error.hpp"

@@ -7,6 +7,7 @@
 // - Hexahedra of unstructured grids: six tetrahedra, all with the cell's lowest point id as apex, over the faces that do not
 //   touch it, each cut through its own lowest point id. The diagonal of a face depends on its ids only, so neighbours agree
 //   (Dompierre, Labbé, Vallet, Camarero, "How to Subdivide Pyramids, Prisms and Hexahedra into Tetrahedra", 1999).
+//   A hexahedron that lists a vertex twice (a wedge stored as one) gives fewer: none with a repeated vertex is made.
 #pragma once
 
 #include <cstddef>

@@ -34,7 +34,7 @@ struct Statistics {
         std::size_t drawn = 0;
         std::size_t triangles = 0;
         std::size_t unordered = 0;  // cells that the sorter could only order by depth
-        std::optional<std::size_t> order_violations;  // face neighbours the wrong way round, when counted
+        std::size_t order_violations = 0;  // pairs of face neighbours drawn the wrong way round
     } counts;
     std::string method;           // of integration: "preint3d:64"
     std::string backend;          // "gl_osmesa"
@@ -51,7 +51,7 @@ struct RunStatistics {
     std::size_t peak_memory_bytes = 0;
 };
 
-// Largest resident set of this process so far [bytes].
+// Largest resident set of this process so far [bytes]; 0 where /proc does not tell.
 std::size_t peak_memory_bytes();
 
 // The JSON of the design; what was not measured is null.

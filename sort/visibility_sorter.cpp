@@ -51,7 +51,7 @@ private:
 // exact predicate, hence the same for both cells of the face, up to the sign.
 int beyond_face(const TetMesh& mesh, CellId cell, int face, const Eye& eye) {
     const auto v = face_vertices(mesh.tets[cell], face);
-    return -side_of_plane(eye, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+    return side_of_plane(eye, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
 }
 
 glm::dvec3 centroid(const TetMesh& mesh, CellId cell) {

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The program as a user meets it: exit codes, messages, files. Meshes are small files written here.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+    int code = -1;
+    std::string text;  // standard output and error together
+};
+
+class CommandLine : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::path(testing::TempDir()) /
+                  ("cellproj_cli_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        write("cube.vtk", cube());
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path path(const std::string& name) const { return folder_ / name; }
+
+    void write(const std::string& name, const std::string& text) const {
+        std::ofstream(path(name), std::ios::binary) << text;
+    }
+
+    // Runs cellproj in the test's folder.
+    Outcome run(const std::string& arguments, const std::string& environment = "") const {
+        const std::string command =
+            "cd '" + folder_.string() + "' && " + environment + " '" + CELLPROJ_PROGRAM + "' " + arguments + " 2>&1";
+        Outcome outcome;
+        FILE* pipe = popen(command.c_str(), "r");
+        std::array<char, 4096> buffer{};
+        for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) outcome.text.append(buffer.data(), n);
+        const int status = pclose(pipe);
+        outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+        return outcome;
+    }
+
+    // Exit 1, the words in the message, and no picture or leftover in the folder.
+    void expect_refused(const std::string& arguments, std::initializer_list<const char*> words) const {
+        const auto files = [&] { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); };
+        const auto before = files();
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, 1) << arguments << "\n" << outcome.text;
+        for (const char* word : words) {
+            EXPECT_NE(outcome.text.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.text;
+        }
+        EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << "one line only: " << outcome.text;
+        EXPECT_EQ(files(), before) << arguments;
+    }
+
+    // One hexahedron with a scalar "p", a vector "U" and a cell field "rank".
+    static std::string cube() {
+        return "# vtk DataFile Version 3.0\ncube\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n"
+               "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\nCELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n"
+               "POINT_DATA 8\nSCALARS p double 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7\nVECTORS U double\n"
+               "0 0 0 1 0 0 0 2 0 0 0 3 0 0 0 3 4 0 0 0 0 0 0 0\nCELL_DATA 1\nSCALARS rank int 1\nLOOKUP_TABLE default\n7\n";
+    }
+
+    static std::string replaced(std::string text, const std::string& what, const std::string& with) {
+        const auto at = text.find(what);
+        EXPECT_NE(at, std::string::npos);
+        return text.replace(at, what.size(), with);
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(CommandLine, RendersAPicture) {
+    const Outcome outcome = run("render cube.vtk -o cube.png --size 40x30");
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_GT(fs::file_size(path("cube.png")), 200U);
+    EXPECT_EQ(run("render cube.vtk -o cube.exr --size 40x30 --field U --projection parallel").code, 0);
+    EXPECT_TRUE(fs::exists(path("cube.exr")));
+}
+
+TEST_F(CommandLine, StatisticsHaveTheirKeys) {
+    ASSERT_EQ(run("render cube.vtk -o cube.png --size 40x30 --stats stats.json").code, 0);
+    std::ifstream stream(path("stats.json"));
+    const auto json = nlohmann::json::parse(stream);
+    const auto& picture = json.at("pictures").at(0);
+    EXPECT_EQ(picture.at("counts").at("cells"), 6);
+    EXPECT_EQ(picture.at("counts").at("order_violations"), 0);
+    for (const char* key : {"plan", "sort", "project", "draw", "read_back", "total", "write"}) {
+        EXPECT_GE(picture.at("ms").at(key), 0.0) << key;
+    }
+    EXPECT_GT(picture.at("ms").at("total"), 0.0);
+    EXPECT_GT(json.at("peak_memory_bytes"), 1'000'000);
+    EXPECT_EQ(picture.at("backend"), "gl_osmesa");
+}
+
+TEST_F(CommandLine, OrbitAndCameraArraysNumberTheirPictures) {
+    EXPECT_EQ(run("render cube.vtk -o orbit.png --size 20x20 --orbit 180 --frames 3").code, 0);
+    for (const char* name : {"orbit_000.png", "orbit_001.png", "orbit_002.png"}) EXPECT_TRUE(fs::exists(path(name))) << name;
+    EXPECT_FALSE(fs::exists(path("orbit_003.png")));
+    const std::string camera = R"({"projection": "parallel", "eye": [3,2,1], "center": [0.5,0.5,0.5], "up": [0,0,1], "height": 2})";
+    write("cams.json", "[" + camera + "," + camera + "]");
+    EXPECT_EQ(run("render cube.vtk -o two.png --size 20x20 --camera cams.json").code, 0);
+    EXPECT_TRUE(fs::exists(path("two_001.png")));
+    write("cam.json", camera);
+    EXPECT_EQ(run("render cube.vtk -o one.png --size 20x20 --camera cam.json").code, 0);
+    EXPECT_TRUE(fs::exists(path("one.png")));
+    expect_refused("render cube.vtk -o three.png --camera cams.json --orbit 90 --frames 2", {"--frames", "2 cameras"});
+}
+
+TEST_F(CommandLine, InfoTellsWhatIsInAFile) {
+    const Outcome outcome = run("info cube.vtk");
+    EXPECT_EQ(outcome.code, 0);
+    for (const char* words : {"points      8", "1 hexahedr", "tetrahedra  6 (0 of zero volume", "0 .. 7", "3 components, magnitude 0 .. 5",
+                              "rank", "cellproj render cube.vtk -o picture.png --field p"}) {
+        EXPECT_NE(outcome.text.find(words), std::string::npos) << "no \"" << words << "\" in:\n" << outcome.text;
+    }
+}
+
+TEST_F(CommandLine, HelpVersionAndUsage) {
+    EXPECT_EQ(run("--help").code, 0);
+    EXPECT_NE(run("--help").text.find("Examples:"), std::string::npos);
+    EXPECT_EQ(run("render --help").code, 0);
+    EXPECT_EQ(run("--version").code, 0);
+    EXPECT_EQ(run("").code, 2);
+    EXPECT_EQ(run("render").code, 2);
+    EXPECT_EQ(run("render cube.vtk -o a.png --no-such-flag").code, 2);
+    EXPECT_EQ(run("render cube.vtk -o a.png --frames zero").code, 2);
+    EXPECT_EQ(run("paint cube.vtk").code, 2);
+}
+
+TEST_F(CommandLine, RefusesBadFiles) {
+    expect_refused("render missing.vtu -o a.png", {"missing.vtu"});
+    write("empty.vtu", "");
+    expect_refused("render empty.vtu -o a.png", {"empty.vtu", "empty"});
+    write("cut.vtu", "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\">\n<UnstructuredGrid>\n<Piece NumberOf");
+    expect_refused("render cut.vtu -o a.png", {"cut.vtu"});
+    expect_refused("render . -o a.png", {"folder"});
+    expect_refused("info missing.vtu", {"missing.vtu"});
+    write("surface.vtk", replaced(replaced(cube(), "CELLS 1 9\n8 0 1 2 3 4 5 6 7", "CELLS 1 4\n3 0 1 2"), "CELL_TYPES 1\n12", "CELL_TYPES 1\n5"));
+    expect_refused("render surface.vtk -o a.png", {"surface.vtk", "volume"});
+    write("nan.vtk", replaced(cube(), "0 0 0 1 0 0", "nan 0 0 1 0 0"));
+    expect_refused("render nan.vtk -o a.png", {"nan.vtk", "finite"});
+    write("outside.vtk", replaced(cube(), "8 0 1 2 3 4 5 6 7", "8 0 1 2 3 4 5 6 99"));
+    expect_refused("render outside.vtk -o a.png", {"outside.vtk", "99"});
+}
+
+TEST_F(CommandLine, RefusesBadChoices) {
+    expect_refused("render cube.vtk -o a.png --field q", {"\"q\"", "\"p\"", "\"U\"", "\"rank\""});
+    expect_refused("render cube.vtk -o a.png --size 0x0", {"--size", "0x0"});
+    expect_refused("render cube.vtk -o a.png --size 20000x10", {"--size", "16384"});
+    expect_refused("render cube.vtk -o a.png --size big", {"--size", "big"});
+    expect_refused("render cube.vtk -o no/such/folder/a.png", {"no/such/folder"});
+    expect_refused("render cube.vtk -o cube.vtk/a.png", {"cube.vtk"});
+    expect_refused("render cube.vtk -o a.jpg", {".png"});
+    expect_refused("render cube.vtk -o a.png --stats no/such/s.json", {"no/such"});
+    expect_refused("render cube.vtk -o a.png --up 0,0,0", {"up"});
+    expect_refused("render demo:cube -o a.png", {"demo:sphere"});
+}
+
+TEST_F(CommandLine, RefusesBadTransferFunctionsAndCameras) {
+    const auto transfer = [&](const std::string& extinction) {
+        write("tf.json", R"({"model": "density", "color": [[0,1,0,0]], "extinction": )" + extinction + "}");
+    };
+    transfer("[[0,1],[2,1],[1,0]]");
+    expect_refused("render cube.vtk -o a.png --transfer tf.json", {"tf.json"});
+    transfer("[[0,1],[null,1]]");
+    expect_refused("render cube.vtk -o a.png --transfer tf.json", {"tf.json"});
+    transfer("[[0,1],[NaN,1]]");
+    expect_refused("render cube.vtk -o a.png --transfer tf.json", {"tf.json"});
+    expect_refused("render cube.vtk -o a.png --transfer missing.json", {"missing.json"});
+    expect_refused("render cube.vtk -o a.png --camera missing.json", {"missing.json"});
+    expect_refused("render cube.vtk -o a.png --camera .", {"expected"});
+    write("cam.json", R"({"projection": "parallel", "eye": [0,0,0], "center": [0,0,0], "up": [0,0,1], "height": 2})");
+    expect_refused("render cube.vtk -o a.png --camera cam.json", {"cam.json", "eye"});
+}
+
+TEST_F(CommandLine, ABlankPictureIsNotSilent) {
+    write("far.json", R"({"projection": "parallel", "eye": [900,0,0], "center": [900,9,0], "up": [0,0,1], "height": 1})");
+    const Outcome outcome = run("render cube.vtk -o a.png --size 20x20 --camera far.json");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.text.find("blank"), std::string::npos);
+}
+
+TEST_F(CommandLine, PicturesThatCannotBeWrittenLeaveTheOldOne) {
+    write("a.png", "old");
+    expect_refused("render missing.vtu -o a.png", {"missing.vtu"});
+    std::ifstream stream(path("a.png"));
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "old");
+}
+
+}  // namespace
