@@ -3,12 +3,8 @@
 // Transfer functions from JSON: cellproj's own strict form, and ParaView's exported colour maps.
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -16,6 +12,7 @@
 #include "classify/color_space.hpp"
 #include "classify/transfer_function.hpp"
 #include "mesh/error.hpp"
+#include "mesh/text_file.hpp"
 
 namespace cellproj {
 
@@ -232,16 +229,6 @@ std::vector<ExtinctionNode> paraview_extinction(const Json& map, const std::stri
     return extinction_from_opacity(nodes, distance, OpacityConvention::exponential, place);
 }
 
-std::string read_text(const std::filesystem::path& file) {
-    const std::string expected = "a readable transfer function (JSON)", advice = "check the path and its permissions";
-    if (std::filesystem::is_directory(file)) fail(ErrorKind::file, file.string(), expected, "a folder", advice);
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) fail(ErrorKind::file, file.string(), expected, std::strerror(errno), advice);
-    std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    if (stream.bad()) fail(ErrorKind::file, file.string(), expected, "a read error", advice);
-    return text;
-}
-
 }  // namespace
 
 TransferFunction parse_transfer_function(std::string_view json, const std::string& place,
@@ -259,7 +246,7 @@ TransferFunction parse_transfer_function(std::string_view json, const std::strin
 }
 
 TransferFunction read_transfer_function(const std::filesystem::path& file, double paraview_unit_distance) {
-    return parse_transfer_function(read_text(file), file.string(), paraview_unit_distance);
+    return parse_transfer_function(read_text_file(file, "a readable transfer function (JSON)"), file.string(), paraview_unit_distance);
 }
 
 }  // namespace cellproj

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "mesh/error.hpp"
+#include "mesh/text_file.hpp"
 #include "project/camera.hpp"
 
 namespace cellproj {
@@ -74,12 +73,7 @@ std::vector<Camera> parse_cameras(std::string_view text, const std::string& plac
 }
 
 std::vector<Camera> read_cameras(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.good() && !stream.eof()) {
-        throw Error({ErrorKind::file, file.string(), "a readable camera file", "none", "check the path"});
-    }
-    return parse_cameras(text, file.string());
+    return parse_cameras(read_text_file(file, "a readable camera file (JSON)"), file.string());
 }
 
 std::string to_json(const Camera& camera) {

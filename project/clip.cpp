@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "project/clip.hpp"
 
+#include "mesh/predicates.hpp"
+
 namespace cellproj {
 
 namespace {
@@ -13,30 +15,47 @@ EyeVertex cut(const EyeVertex& inside, const EyeVertex& outside, double near) {
     return v;
 }
 
-// A wedge with the triangles (a0, a1, a2) and (b0, b1, b2), b_i joined to a_i, as three tetrahedra.
-ClippedTet wedge(const EyeVertex& a0, const EyeVertex& a1, const EyeVertex& a2, const EyeVertex& b0, const EyeVertex& b1,
-                 const EyeVertex& b2) {
-    return {3, {{{a0, a1, a2, b2}, {a0, a1, b1, b2}, {a0, b0, b1, b2}}}};
+using Tet = std::array<EyeVertex, 4>;
+
+// Whether the eye at the origin lies on the side of corner 3 of the face that the other corners span.
+bool eye_beside_last(const Tet& t) {
+    const auto side = [&](const glm::dvec3& eye) {
+        return side_of_plane(Eye::at(eye), t[0].position, t[1].position, t[2].position);
+    };
+    return side({0, 0, 0}) * side(t[3].position) > 0;
 }
 
-ProjectedVertex mix(const ProjectedVertex& a, const ProjectedVertex& b, double t) {
-    return {a.position + t * (b.position - a.position),
-            a.front_depth + t * (b.front_depth - a.front_depth),
-            a.thickness + t * (b.thickness - a.thickness),
-            a.front_scalar + t * (b.front_scalar - a.front_scalar),
-            a.back_scalar + t * (b.back_scalar - a.back_scalar)};
+// A wedge with the triangles (a0, a1, a2) and (b0, b1, b2), b_i joined to a_i: a chain of three tetrahedra, each pair of
+// neighbours with a common face that says which of the two is in front.
+ClippedTet wedge(const EyeVertex& a0, const EyeVertex& a1, const EyeVertex& a2, const EyeVertex& b0, const EyeVertex& b1,
+                 const EyeVertex& b2) {
+    const Tet first{a0, a1, b2, a2}, middle{a0, a1, b1, b2}, last{a0, b1, b2, b0};  // the common face first
+    const bool first_in_front = eye_beside_last(first), last_in_front = eye_beside_last(last);
+    ClippedTet pieces;
+    const auto add = [&](const Tet& tet) { pieces.tets[pieces.count++] = tet; };
+    if (!first_in_front) add(first);
+    if (!last_in_front) add(last);
+    add(middle);
+    if (first_in_front) add(first);
+    if (last_in_front) add(last);
+    return pieces;
+}
+
+SilhouetteVertex mix(const SilhouetteVertex& a, const SilhouetteVertex& b, double t) {
+    return {a.position + t * (b.position - a.position), a.base_depth + t * (b.base_depth - a.base_depth),
+            a.base_scalar + t * (b.base_scalar - a.base_scalar), a.ridges + t * (b.ridges - a.ridges)};
 }
 
 // Keeps the part of the polygon where side·(position[axis] − bound) ≤ 0.
 ClippedPolygon clip_line(const ClippedPolygon& polygon, int axis, double bound, double side) {
     ClippedPolygon kept;
     for (std::size_t i = 0; i < polygon.count; ++i) {
-        const ProjectedVertex& a = polygon.vertices[i];
-        const ProjectedVertex& b = polygon.vertices[(i + 1) % polygon.count];
+        const SilhouetteVertex& a = polygon.vertices[i];
+        const SilhouetteVertex& b = polygon.vertices[(i + 1) % polygon.count];
         const double da = side * (a.position[axis] - bound), db = side * (b.position[axis] - bound);
         if (da <= 0) kept.vertices[kept.count++] = a;
         if ((da < 0 && db > 0) || (da > 0 && db < 0)) {
-            ProjectedVertex& v = kept.vertices[kept.count++];
+            SilhouetteVertex& v = kept.vertices[kept.count++];
             v = mix(a, b, da / (da - db));
             v.position[axis] = bound;
         }
@@ -70,7 +89,7 @@ ClippedTet clip_near(const std::array<EyeVertex, 4>& corners, double near) {
     }
 }
 
-ClippedPolygon clip_to_rectangle(const std::array<ProjectedVertex, 3>& triangle, const Rectangle& rectangle) {
+ClippedPolygon clip_to_rectangle(const std::array<SilhouetteVertex, 3>& triangle, const Rectangle& rectangle) {
     ClippedPolygon polygon;
     polygon.count = 3;
     for (std::size_t i = 0; i < 3; ++i) polygon.vertices[i] = triangle[i];

@@ -10,7 +10,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "project/tet_projection.hpp"
+#include "project/silhouette.hpp"
 
 namespace cellproj {
 
@@ -25,7 +25,8 @@ struct ClippedTet {
     std::array<std::array<EyeVertex, 4>, 3> tets;
 };
 
-// The part of a tetrahedron with depth ≥ near, as tetrahedra. Cells that merely touch the plane give nothing.
+// The part of a tetrahedron with depth ≥ near, as tetrahedra from back to front for the eye at the origin. Cells that merely
+// touch the plane give nothing.
 ClippedTet clip_near(const std::array<EyeVertex, 4>& corners, double near);
 
 struct Rectangle {
@@ -35,11 +36,11 @@ struct Rectangle {
 // A convex polygon: a triangle cut by up to four lines.
 struct ClippedPolygon {
     std::size_t count = 0;  // 0 or 3 .. 7
-    std::array<ProjectedVertex, 7> vertices;
+    std::array<SilhouetteVertex, 7> vertices;
 };
 
-// The part of a projected triangle inside a rectangle (Sutherland–Hodgman). All terms are affine in screen space, so the new
-// vertices are exact up to rounding.
-ClippedPolygon clip_to_rectangle(const std::array<ProjectedVertex, 3>& triangle, const Rectangle& rectangle);
+// The part of a silhouette's triangle inside a rectangle (Sutherland–Hodgman). All terms are affine in screen space, so the
+// new vertices are exact up to rounding.
+ClippedPolygon clip_to_rectangle(const std::array<SilhouetteVertex, 3>& triangle, const Rectangle& rectangle);
 
 }  // namespace cellproj

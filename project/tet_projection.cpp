@@ -25,14 +25,15 @@ std::array<double, 4> face_areas(const std::array<ScreenVertex, 4>& corners) {
 
 ProjectedVertex silhouette_vertex(const ScreenVertex& v) { return {v.position, v.depth, 0.0, v.scalar, v.scalar}; }
 
-// The vertex at `position` where one side of the cell has the terms of `here`, the other those of `there`; `depth_difference`
-// is there.depth − here.depth, computed by the caller without cancellation.
-ProjectedVertex thick_vertex(const glm::dvec2& position, const ScreenVertex& here, const ScreenVertex& there,
-                             double depth_difference, bool perspective) {
-    const bool here_is_front = perspective == (depth_difference < 0);
-    const ScreenVertex& front = here_is_front ? here : there;
-    const ScreenVertex& back = here_is_front ? there : here;
-    return {position, front.depth, std::abs(depth_difference), front.scalar, back.scalar};
+// Sets the thick vertex: the base has the terms of `base`, the other side those of `other`; `depth_difference` is
+// other.depth − base.depth, computed by the caller without cancellation.
+void set_thick_vertex(ProjectedTet& tet, const ScreenVertex& base, const ScreenVertex& other, double depth_difference,
+                      bool perspective) {
+    tet.base_is_front = perspective == (depth_difference < 0);
+    const ScreenVertex& front = tet.base_is_front ? base : other;
+    const ScreenVertex& back = tet.base_is_front ? other : base;
+    tet.vertices[static_cast<std::size_t>(tet.thick)] = {other.position, front.depth, std::abs(depth_difference),
+                                                         front.scalar, back.scalar};
 }
 
 ScreenVertex mix(const ScreenVertex& a, const ScreenVertex& b, double t) {
@@ -46,14 +47,15 @@ void project_around_vertex(ProjectedTet& tet, const std::array<ScreenVertex, 4>&
     // The weight of corner j at m is the area of face j, which joins m with the two corners other than j.
     double total = 0.0;
     for (std::size_t j = 0; j < 4; ++j) total += j == m ? 0.0 : std::abs(areas[j]);
-    ScreenVertex opposite{corners[m].position, 0.0, 0.0};
-    double depth_difference = 0.0;
+    ScreenVertex base{corners[m].position, 0.0, 0.0};
+    double base_depth_above = 0.0;  // base.depth − corners[m].depth
     std::size_t triangles = 0;
     for (std::size_t j = 0; j < 4; ++j) {
         if (j == m || areas[j] == 0.0) continue;
         const double weight = std::abs(areas[j]) / total;
-        depth_difference += weight * (corners[j].depth - corners[m].depth);
-        opposite.scalar += weight * corners[j].scalar;
+        tet.base_weights[j] = weight;
+        base_depth_above += weight * (corners[j].depth - corners[m].depth);
+        base.scalar += weight * corners[j].scalar;
 
         auto& triangle = tet.triangles[triangles++];
         std::size_t corner = 0;
@@ -62,10 +64,10 @@ void project_around_vertex(ProjectedTet& tet, const std::array<ScreenVertex, 4>&
         }
         triangle[2] = static_cast<std::uint8_t>(m);
     }
-    opposite.depth = corners[m].depth + depth_difference;
+    base.depth = corners[m].depth + base_depth_above;
     tet.kind = static_cast<ProjectionClass>(triangles);
     tet.thick = static_cast<int>(m);
-    tet.vertices[m] = thick_vertex(corners[m].position, corners[m], opposite, depth_difference, perspective);
+    set_thick_vertex(tet, base, corners[m], -base_depth_above, perspective);
 }
 
 // Edges (i, j) and (k, l) cross; faces i and j are seen from one side, faces k and l from the other.
@@ -79,12 +81,14 @@ void project_crossing_edges(ProjectedTet& tet, const std::array<ScreenVertex, 4>
     const double u = std::abs(areas[j]) / (std::abs(areas[j]) + std::abs(areas[i]));
     const ScreenVertex on_kl = mix(corners[k], corners[l], t);
     const ScreenVertex on_ij = mix(corners[i], corners[j], u);
-    const double depth_difference = (1 - u) * (corners[i].depth - corners[k].depth) +
-                                    u * (corners[j].depth - corners[k].depth) -
-                                    t * (corners[l].depth - corners[k].depth);
+    const double depth_difference = (1 - t) * (corners[k].depth - corners[i].depth) +
+                                    t * (corners[l].depth - corners[i].depth) -
+                                    u * (corners[j].depth - corners[i].depth);
     tet.kind = ProjectionClass::edges_cross;
     tet.thick = 4;
-    tet.vertices[4] = thick_vertex(on_kl.position, on_kl, on_ij, depth_difference, perspective);
+    tet.base_weights[i] = 1 - u;
+    tet.base_weights[j] = u;
+    set_thick_vertex(tet, on_ij, on_kl, depth_difference, perspective);
     const auto id = [](std::size_t corner) { return static_cast<std::uint8_t>(corner); };
     tet.triangles = {{{id(i), id(k), 4}, {id(k), id(j), 4}, {id(j), id(l), 4}, {id(l), id(i), 4}}};
 }

@@ -49,11 +49,16 @@ enum class ProjectionClass : std::uint8_t {
 
 // Vertices 0..3 are the corners in input order. The *thick vertex*, where the cell is thickest, is the fifth one where
 // edges cross, and the corner `thick` in the other classes; at all other vertices the thickness is 0.
+//
+// On one side of the cell, its *base*, the thick vertex lies on the face or edge of other corners: it is the mean of the
+// corners with `base_weights` (≥ 0, sum 1; three, two or one of them are not 0).
 struct ProjectedTet {
     ProjectionClass kind = ProjectionClass::nothing;
     int thick = 0;
     std::array<ProjectedVertex, 5> vertices{};
     std::array<std::array<std::uint8_t, 3>, 4> triangles{};  // as many as `kind` says; each ends with the thick vertex
+    std::array<double, 4> base_weights{};
+    bool base_is_front = true;
 
     std::size_t vertex_count() const { return kind == ProjectionClass::edges_cross ? 5 : 4; }
     std::size_t triangle_count() const { return static_cast<std::size_t>(kind); }

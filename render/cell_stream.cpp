@@ -9,16 +9,16 @@
 #include <tuple>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 namespace cellproj {
 
 namespace {
 
-// Nearest depth that is drawn, in SceneUnits::length. What lies before it is a millionth of the mesh.
-constexpr double near_depth = 1e-6;
-
-// Rasterizers snap vertices to 1/256 of a pixel: how far outside its exact outline a triangle can cover pixel centres.
-constexpr double snap_margin = 1.0 / 128;
+// Rasterizers snap vertices to a grid of 1/256 of a pixel (llvmpipe, and most GPUs). Doing it before anything is decided makes
+// that harmless: the picture is then exact for a mesh whose points have moved by less than 1/512 of a pixel, the same for all
+// cells at a point, and no pixel centre falls between what the projection and what the rasterizer takes a cell to cover.
+constexpr double snaps_per_pixel = 256.0;
 
 // How far beyond the picture triangles may reach, in pictures. Within it, float32 positions are good to 1e-6 of the picture.
 constexpr double guard_pictures = 1.0;
@@ -32,17 +32,16 @@ ScreenTransform relative_transform(const Camera& camera, ImageSize size, double 
     return {relative, size};
 }
 
-bool corners_inside(const ProjectedTet& tet, const Rectangle& r) {
-    return std::all_of(tet.vertices.begin(), tet.vertices.begin() + 4, [&](const ProjectedVertex& v) {
-        return v.position.x >= r.low.x && v.position.x <= r.high.x && v.position.y >= r.low.y &&
-               v.position.y <= r.high.y;
-    });
+bool inside(const Rectangle& r, const glm::dvec2& low, const glm::dvec2& high) {
+    return low.x >= r.low.x && low.y >= r.low.y && high.x <= r.high.x && high.y <= r.high.y;
 }
 
 }  // namespace
 
 CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size)
     : prepared_(prepared), eye_(camera.eye), transform_(relative_transform(camera, size, prepared.units().length)) {
+    const double distance = glm::distance(camera.eye, camera.center) / prepared.units().length;
+    near_depth_ = 1e-3 * std::min(distance, 1.0);
     const glm::dvec2 picture(size.width, size.height);
     guard_ = {-guard_pictures * picture, (1 + guard_pictures) * picture};
 
@@ -54,9 +53,9 @@ CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, Imag
     oneapi::tbb::parallel_for(Range(0, points_.size(), 4096), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             const glm::dvec3 p = transform_.to_eye((mesh.points[i] - eye_) / units.length);
-            const bool behind = transform_.perspective() && p.z <= near_depth;
+            const bool behind = transform_.perspective() && p.z <= near_depth_;
             const double depth = transform_.perspective() ? 1.0 / p.z : p.z;
-            points_[i] = behind ? ScreenPoint{{}, 0.0} : ScreenPoint{transform_.to_screen(p), depth};
+            points_[i] = behind ? ScreenPoint{{}, 0.0} : ScreenPoint{snapped_position(p), depth};
         }
     });
     oneapi::tbb::parallel_for(Range(0, scalars_.size(), 4096), [&](const Range& range) {
@@ -74,10 +73,14 @@ void CellStream::project(std::span<const CellId> cells, TriangleBatch& batch) co
     }
 }
 
+glm::dvec2 CellStream::snapped_position(const glm::dvec3& eye_point) const {
+    return glm::round(transform_.to_screen(eye_point) * snaps_per_pixel) / snaps_per_pixel;
+}
+
 ScreenVertex CellStream::on_screen(const glm::dvec3& p, double scalar) const {
-    if (!transform_.perspective()) return {transform_.to_screen(p), p.z, scalar};
+    if (!transform_.perspective()) return {snapped_position(p), p.z, scalar};
     const double inverse = 1.0 / p.z;
-    return {transform_.to_screen(p), inverse, scalar * inverse};
+    return {snapped_position(p), inverse, scalar * inverse};
 }
 
 // False when a corner lies behind the near plane.
@@ -101,7 +104,7 @@ bool CellStream::project_clipped(CellId cell, TriangleBatch& batch) const {
         const VertexId v = mesh.tets[cell][i];
         corners[i] = {transform_.to_eye((mesh.points[v] - eye_) / prepared_.units().length), scalars_[per_point ? v : cell]};
     }
-    const ClippedTet pieces = clip_near(corners, near_depth);
+    const ClippedTet pieces = clip_near(corners, near_depth_);
     bool drawn = false;
     for (std::size_t piece = 0; piece < pieces.count; ++piece) {
         Corners screen;
@@ -120,13 +123,29 @@ bool CellStream::project_corners(const Corners& corners, TriangleBatch& batch) c
         high = glm::max(high, corners[i].position);
     }
     if (!covers_pixel(low, high)) return false;
-    const ProjectedTet tet = project_tet(corners, transform_.perspective());
-    if (tet.kind == ProjectionClass::nothing) return false;
-    const CellBounds bounds = cell_bounds(corners);
-    if (corners_inside(tet, guard_)) {
-        append(tet, bounds, batch);
-    } else {
-        append_clipped(tet, bounds, batch);
+    const Silhouette silhouette = make_silhouette(corners, transform_.perspective());
+    if (silhouette.triangle_count == 0) return false;
+
+    const StreamVertex constants = cell_constants(corners, silhouette);
+    const auto base = static_cast<std::uint32_t>(batch.vertices.size());
+    if (inside(guard_, low, high)) {
+        for (const SilhouetteVertex& v : silhouette.vertices) batch.vertices.push_back(stream_vertex(v, constants));
+        for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {
+            for (const std::uint8_t corner : silhouette.triangles[t]) batch.indices.push_back(base + corner);
+        }
+        return true;
+    }
+    for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {
+        const auto& [a, b, c] = silhouette.triangles[t];
+        const auto& v = silhouette.vertices;
+        const ClippedPolygon polygon = clip_to_rectangle({v[a], v[b], v[c]}, guard_);
+        const auto first = static_cast<std::uint32_t>(batch.vertices.size());
+        for (std::size_t i = 0; i < polygon.count; ++i) {
+            batch.vertices.push_back(stream_vertex(polygon.vertices[i], constants));
+        }
+        for (std::uint32_t i = 2; i < polygon.count; ++i) {
+            batch.indices.insert(batch.indices.end(), {first, first + i - 1, first + i});
+        }
     }
     return true;
 }
@@ -134,12 +153,13 @@ bool CellStream::project_corners(const Corners& corners, TriangleBatch& batch) c
 // Whether the box holds a pixel centre of the picture.
 bool CellStream::covers_pixel(const glm::dvec2& low, const glm::dvec2& high) const {
     const glm::dvec2 picture(transform_.size().width, transform_.size().height);
-    const glm::dvec2 first = glm::max(glm::ceil(low - 0.5 - snap_margin), glm::dvec2(0.0));
-    const glm::dvec2 last = glm::min(glm::floor(high - 0.5 + snap_margin), picture - 1.0);
+    const glm::dvec2 first = glm::max(glm::ceil(low - 0.5), glm::dvec2(0.0));
+    const glm::dvec2 last = glm::min(glm::floor(high - 0.5), picture - 1.0);
     return first.x <= last.x && first.y <= last.y;
 }
 
-CellStream::CellBounds CellStream::cell_bounds(const Corners& corners) const {
+// The part of a vertex that is equal for a whole cell.
+StreamVertex CellStream::cell_constants(const Corners& corners, const Silhouette& silhouette) const {
     const bool perspective = transform_.perspective();
     const auto depth = [&](const ScreenVertex& v) { return perspective ? 1.0 / v.depth : v.depth; };
     const auto scalar = [&](const ScreenVertex& v) { return perspective ? v.scalar / v.depth : v.scalar; };
@@ -150,42 +170,25 @@ CellStream::CellBounds CellStream::cell_bounds(const Corners& corners) const {
         low = std::min(low, scalar(corners[i]));
         high = std::max(high, scalar(corners[i]));
     }
-    return {static_cast<float>(low), static_cast<float>(high), static_cast<float>(far - near)};
+    // A ray that enters at the near plane counts from the eye on.
+    if (perspective && near <= near_depth_ * 1.0001) near = 0.0;
+    StreamVertex constants{};
+    constants.scalar_slope = static_cast<float>(silhouette.scalar_slope);
+    constants.scalar_low = static_cast<float>(low);
+    constants.scalar_high = static_cast<float>(high);
+    constants.depth_range = static_cast<float>(silhouette.base_is_front ? far - near : near - far);
+    return constants;
 }
 
-StreamVertex CellStream::stream_vertex(const ProjectedVertex& v, const CellBounds& bounds) const {
+StreamVertex CellStream::stream_vertex(const SilhouetteVertex& v, const StreamVertex& constants) const {
     const ImageSize size = transform_.size();
-    return {static_cast<float>(2 * v.position.x / size.width - 1),
-            static_cast<float>(2 * v.position.y / size.height - 1),
-            static_cast<float>(v.front_depth),
-            static_cast<float>(v.thickness),
-            static_cast<float>(v.front_scalar),
-            static_cast<float>(v.back_scalar),
-            bounds.scalar_low,
-            bounds.scalar_high,
-            bounds.depth_range};
-}
-
-void CellStream::append(const ProjectedTet& tet, const CellBounds& bounds, TriangleBatch& batch) const {
-    const auto base = static_cast<std::uint32_t>(batch.vertices.size());
-    for (std::size_t v = 0; v < tet.vertex_count(); ++v) batch.vertices.push_back(stream_vertex(tet.vertices[v], bounds));
-    for (std::size_t t = 0; t < tet.triangle_count(); ++t) {
-        for (const std::uint8_t corner : tet.triangles[t]) batch.indices.push_back(base + corner);
-    }
-}
-
-void CellStream::append_clipped(const ProjectedTet& tet, const CellBounds& bounds, TriangleBatch& batch) const {
-    for (std::size_t t = 0; t < tet.triangle_count(); ++t) {
-        const auto& [a, b, c] = tet.triangles[t];
-        const ClippedPolygon polygon = clip_to_rectangle({tet.vertices[a], tet.vertices[b], tet.vertices[c]}, guard_);
-        const auto base = static_cast<std::uint32_t>(batch.vertices.size());
-        for (std::size_t v = 0; v < polygon.count; ++v) {
-            batch.vertices.push_back(stream_vertex(polygon.vertices[v], bounds));
-        }
-        for (std::uint32_t v = 2; v < polygon.count; ++v) {
-            batch.indices.insert(batch.indices.end(), {base, base + v - 1, base + v});
-        }
-    }
+    StreamVertex out = constants;
+    out.x = static_cast<float>(2 * v.position.x / size.width - 1);
+    out.y = static_cast<float>(2 * v.position.y / size.height - 1);
+    out.base_depth = static_cast<float>(v.base_depth);
+    out.base_scalar = static_cast<float>(v.base_scalar);
+    for (int ridge = 0; ridge < 3; ++ridge) out.ridges[ridge] = static_cast<float>(v.ridges[ridge]);
+    return out;
 }
 
 }  // namespace cellproj

@@ -11,20 +11,21 @@
 
 #include "project/camera.hpp"
 #include "project/clip.hpp"
-#include "project/tet_projection.hpp"
+#include "project/silhouette.hpp"
 #include "render/prepared_scene.hpp"
 
 namespace cellproj {
 
-// A vertex as the rasterizer gets it. Positions are in clip space (−1 .. 1 over the picture, row 0 at y = −1, w = 1), lengths in
-// SceneUnits::length, scalars normalized; depth and scalar terms as in project/tet_projection.hpp. The last three are the
-// bounds of the cell, equal at all its vertices: slivers extrapolate, and the fragment clamps.
+// A vertex as the rasterizer gets it: a silhouette's (project/silhouette.hpp). Positions are in clip space (−1 .. 1 over the
+// picture, row 0 at y = −1, w = 1), lengths in SceneUnits::length, scalars normalized. The last four are equal at all vertices of
+// a cell; slivers extrapolate at pixel centres just outside, so the fragment clamps to the cell's range.
 struct StreamVertex {
     float x, y;
-    float front_depth, thickness;
-    float front_scalar, back_scalar;
+    float base_depth, base_scalar;
+    float ridges[3];
+    float scalar_slope;
     float scalar_low, scalar_high;
-    float depth_range;  // largest minus smallest depth
+    float depth_range;  // largest minus smallest depth; negative when the base is the back
 };
 
 // Triangles of consecutive cells, three indices each.
@@ -50,22 +51,22 @@ public:
     void project(std::span<const CellId> cells, TriangleBatch& batch) const;
 
     const ScreenTransform& transform() const { return transform_; }
+    // Perspective: depth of the near plane [SceneUnits::length], a thousandth of the distance to what the camera looks at or of
+    // the mesh. Cells are cut there, and what a ray meets before it is drawn as if it were the cell at the plane. A nearer plane would cost
+    // accuracy: float32 carries 1/depth to 6e-8 of the largest one.
+    double near_depth() const { return near_depth_; }
 
 private:
-    struct CellBounds {
-        float scalar_low, scalar_high, depth_range;
-    };
     using Corners = std::array<ScreenVertex, 4>;
 
+    glm::dvec2 snapped_position(const glm::dvec3& eye_point) const;
     ScreenVertex on_screen(const glm::dvec3& eye_point, double scalar) const;
     bool load(CellId cell, Corners& corners) const;
     bool project_clipped(CellId cell, TriangleBatch& batch) const;
     bool project_corners(const Corners& corners, TriangleBatch& batch) const;
     bool covers_pixel(const glm::dvec2& low, const glm::dvec2& high) const;
-    CellBounds cell_bounds(const Corners& corners) const;
-    void append(const ProjectedTet& tet, const CellBounds& bounds, TriangleBatch& batch) const;
-    void append_clipped(const ProjectedTet& tet, const CellBounds& bounds, TriangleBatch& batch) const;
-    StreamVertex stream_vertex(const ProjectedVertex& v, const CellBounds& bounds) const;
+    StreamVertex cell_constants(const Corners& corners, const Silhouette& silhouette) const;
+    StreamVertex stream_vertex(const SilhouetteVertex& v, const StreamVertex& constants) const;
 
     struct ScreenPoint {
         glm::dvec2 position;  // pixels
@@ -75,6 +76,7 @@ private:
     const PreparedScene& prepared_;
     glm::dvec3 eye_;
     ScreenTransform transform_;         // in the units of the scene, about the eye
+    double near_depth_;
     Rectangle guard_;                   // triangles that reach beyond are clipped
     std::vector<ScreenPoint> points_;   // #P
     std::vector<double> scalars_;       // #P or #T, normalized

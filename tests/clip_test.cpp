@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/predicates.hpp"
+#include "tests/support/tet_rays.hpp"
 
 namespace cellproj {
 namespace {
@@ -64,14 +65,41 @@ TEST(ClipNear, ScalarsStayLinear) {
     }
 }
 
+// Along every ray from the eye each piece ends where the one drawn after it begins, or is not met.
+TEST(ClipNear, PiecesComeBackToFront) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    int met = 0;
+    for (int trial = 0; trial < 3000; ++trial) {
+        Corners corners;
+        for (auto& v : corners) v = {{unit(random), unit(random), unit(random)}, 0};
+        const ClippedTet pieces = clip_near(corners, 0.05);
+        for (int ray = 0; ray < 10 && pieces.count == 3; ++ray) {
+            const glm::dvec2 at(unit(random), unit(random));
+            double entered = 1e300;
+            for (const auto& piece : pieces.tets) {
+                testing_support::Points points;
+                for (std::size_t i = 0; i < 4; ++i) points[i] = piece[i].position;
+                if (orientation(points[0], points[1], points[2], points[3]) < 0) std::swap(points[2], points[3]);
+                const auto segment = testing_support::cast(points, {0, 0, 0, 0}, at, true);
+                if (!segment || segment->back - segment->front < 1e-9) continue;
+                EXPECT_LE(segment->back, entered + 1e-9) << "trial " << trial;
+                entered = segment->front;
+                ++met;
+            }
+        }
+    }
+    EXPECT_GT(met, 1000);
+}
+
 TEST(ClipNear, ACellThatTouchesThePlaneGivesNothing) {
     const Corners behind{{{{0, 0, 1}, 0}, {{1, 0, 0}, 0}, {{0, 1, 0}, 0}, {{0, 0, 0}, 0}}};
     EXPECT_EQ(clip_near(behind, 1.0).count, 0U);
     EXPECT_NEAR(volume(clip_near(behind, 0.0)), volume(behind), 1e-16);
 }
 
-ProjectedVertex affine(const glm::dvec2& p) {
-    return {p, 1 + 2 * p.x - p.y, 5 + p.x + p.y, 2 * p.y, 3 - p.x};
+SilhouetteVertex affine(const glm::dvec2& p) {
+    return {p, 1 + 2 * p.x - p.y, 5 + p.x + p.y, {2 * p.y, 3 - p.x, p.x - p.y}};
 }
 
 TEST(ClipToRectangle, KeepsTheAffineTermsAndTheArea) {
@@ -80,7 +108,7 @@ TEST(ClipToRectangle, KeepsTheAffineTermsAndTheArea) {
     const Rectangle whole{{-3, -3}, {3, 3}};
     for (int trial = 0; trial < 2000; ++trial) {
         const double x = coordinate(random) / 2, y = coordinate(random) / 2;
-        std::array<ProjectedVertex, 3> triangle;
+        std::array<SilhouetteVertex, 3> triangle;
         for (auto& v : triangle) v = affine({coordinate(random), coordinate(random)});
         // The four parts of the plane around (x, y) together hold the triangle.
         double area = 0;
@@ -88,12 +116,11 @@ TEST(ClipToRectangle, KeepsTheAffineTermsAndTheArea) {
                                       Rectangle{{x, whole.low.y}, {whole.high.x, y}}, Rectangle{{whole.low.x, y}, {x, whole.high.y}}}) {
             const ClippedPolygon polygon = clip_to_rectangle(triangle, part);
             for (std::size_t i = 0; i < polygon.count; ++i) {
-                const ProjectedVertex& v = polygon.vertices[i];
-                const ProjectedVertex exact = affine(v.position);
-                ASSERT_NEAR(v.front_depth, exact.front_depth, 1e-12);
-                ASSERT_NEAR(v.thickness, exact.thickness, 1e-12);
-                ASSERT_NEAR(v.front_scalar, exact.front_scalar, 1e-12);
-                ASSERT_NEAR(v.back_scalar, exact.back_scalar, 1e-12);
+                const SilhouetteVertex& v = polygon.vertices[i];
+                const SilhouetteVertex exact = affine(v.position);
+                ASSERT_NEAR(v.base_depth, exact.base_depth, 1e-12);
+                ASSERT_NEAR(v.base_scalar, exact.base_scalar, 1e-12);
+                ASSERT_NEAR(glm::distance(v.ridges, exact.ridges), 0, 1e-12);
                 ASSERT_TRUE(v.position.x >= part.low.x && v.position.x <= part.high.x);
                 ASSERT_TRUE(v.position.y >= part.low.y && v.position.y <= part.high.y);
                 if (i >= 2) {
@@ -108,12 +135,12 @@ TEST(ClipToRectangle, KeepsTheAffineTermsAndTheArea) {
 
 // From the eye's own cell corners project to millions of pixels; what remains fits.
 TEST(ClipToRectangle, BringsHugeTrianglesToThePicture) {
-    const std::array<ProjectedVertex, 3> triangle{affine({-1e9, -2e9}), affine({3e9, 1e8}), affine({-5e8, 2e9})};
+    const std::array<SilhouetteVertex, 3> triangle{affine({-1e9, -2e9}), affine({3e9, 1e8}), affine({-5e8, 2e9})};
     const ClippedPolygon polygon = clip_to_rectangle(triangle, {{-512, -512}, {1024, 1024}});
     ASSERT_EQ(polygon.count, 4U);
     for (std::size_t i = 0; i < 4; ++i) {
         // 1e-6: the terms at 1e9 pixels carry 1e-16 relative, that is 1e-7.
-        EXPECT_NEAR(polygon.vertices[i].front_depth, affine(polygon.vertices[i].position).front_depth, 2e-6);
+        EXPECT_NEAR(polygon.vertices[i].base_depth, affine(polygon.vertices[i].position).base_depth, 2e-6);
     }
 }
 

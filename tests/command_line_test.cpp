@@ -152,8 +152,13 @@ TEST_F(CommandLine, RefusesBadFiles) {
     expect_refused("info missing.vtu", {"missing.vtu"});
     write("surface.vtk", replaced(replaced(cube(), "CELLS 1 9\n8 0 1 2 3 4 5 6 7", "CELLS 1 4\n3 0 1 2"), "CELL_TYPES 1\n12", "CELL_TYPES 1\n5"));
     expect_refused("render surface.vtk -o a.png", {"surface.vtk", "volume"});
-    write("nan.vtk", replaced(cube(), "0 0 0 1 0 0", "nan 0 0 1 0 0"));
-    expect_refused("render nan.vtk -o a.png", {"nan.vtk", "finite"});
+    std::string vtu = "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\">"
+                      "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 nan</DataArray></Points>"
+                      "<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"
+                      "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
+                      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
+    write("nan.vtu", vtu);
+    expect_refused("render nan.vtu -o a.png", {"nan.vtu"});
     write("outside.vtk", replaced(cube(), "8 0 1 2 3 4 5 6 7", "8 0 1 2 3 4 5 6 99"));
     expect_refused("render outside.vtk -o a.png", {"outside.vtk", "99"});
 }

@@ -12,6 +12,7 @@
 #include <random>
 
 #include <glm/geometric.hpp>
+#include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 
 #include "classify/segment_integral.hpp"
@@ -74,68 +75,59 @@ Chord chord_in_unit_cube(const ScreenTransform::Ray& ray, bool from_origin) {
     return chord;
 }
 
-double max_difference(const glm::vec4& a, const glm::dvec4& b) {
-    double largest = 0;
-    for (int k = 0; k < 4; ++k) {
-        const double difference = std::abs(static_cast<double>(a[k]) - b[k]);
-        largest = difference <= largest ? largest : difference;  // NaN counts as a difference
-        if (std::isnan(difference)) return difference;
-    }
-    return largest;
-}
-
 double max_difference(const Image& a, const Image& b) {
     EXPECT_EQ(a.pixels.size(), b.pixels.size());
     double largest = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        const double difference = max_difference(a.pixels[i], b.pixels[i]);
-        if (!(difference <= largest)) largest = difference;
-    }
-    return largest;
-}
-
-// The light along every pixel's ray through the unit cube, where the scalar is linear: one segment, integrated to 1e-10.
-// Pixels whose centre is within 1/100 of a pixel of the silhouette are left out (alpha −1): rasterizers snap vertices to 1/256
-// of a pixel, so that whether they are covered at all is not defined better. On the cube's silhouette the chord may jump.
-Image truth_in_unit_cube(const Camera& camera, ImageSize size, const TransferFunction& transfer,
-                         const std::function<double(const glm::dvec3&)>& f) {
-    const ScreenTransform transform(camera, size);
-    Image image(size.width, size.height);
-    for (int y = 0; y < size.height; ++y) {
-        for (int x = 0; x < size.width; ++x) {
-            const glm::dvec2 center(x + 0.5, y + 0.5);
-            const auto chord_at = [&](const glm::dvec2& pixel) {
-                return chord_in_unit_cube(transform.ray(pixel), transform.perspective());
-            };
-            int covered = 0;
-            for (const glm::dvec2& offset : {glm::dvec2(0.01, 0), glm::dvec2(-0.01, 0), glm::dvec2(0, 0.01), glm::dvec2(0, -0.01)}) {
-                covered += chord_at(center + offset).length() > 0;
-            }
-            const Chord chord = chord_at(center);
-            const auto ray = transform.ray(center);
-            const auto at = [&](double t) { return f(ray.origin + t * ray.direction); };
-            const Light light = chord.length() > 0
-                                    ? integrate_segment(transfer, at(chord.enter), at(chord.leave), chord.length())
-                                    : Light{};
-            image.at(x, y) = covered == 0 || covered == 4 ? glm::vec4(glm::vec3(light.color), static_cast<float>(light.opacity))
-                                                          : glm::vec4(0, 0, 0, -1);
+        for (int k = 0; k < 4; ++k) {
+            const double difference = std::abs(static_cast<double>(a.pixels[i][k]) - b.pixels[i][k]);
+            if (!(difference <= largest)) largest = difference;  // NaN counts as a difference
         }
     }
-    return image;
+    return largest;
 }
 
-// Largest difference over the pixels that the truth defines.
-double error_against(const Image& truth, const Image& image) {
+double max_difference(const glm::vec4& a, const glm::dvec4& b) {
+    const glm::dvec4 difference = glm::abs(glm::dvec4(a) - b);
+    return std::max({difference.x, difference.y, difference.z, difference.w});
+}
+
+// The light along the ray through a position on the screen, in float64.
+using Truth = std::function<Light(const glm::dvec2&)>;
+
+// Rasterizers place points on a grid of 1/256 of a pixel: the picture is one of a mesh moved by at most 1/512 of a pixel in x and y. So
+// a pixel is right if its value lies between those that the truth takes within that distance of its centre; how far it
+// lies outside, at most over all pixels and channels, is the error. On silhouettes, where the chord jumps, that is either side.
+double error_against(const Truth& truth, const Image& image) {
     double largest = 0;
-    std::size_t defined = 0;
-    for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
-        if (truth.pixels[i].w < 0) continue;
-        ++defined;
-        const double difference = max_difference(image.pixels[i], glm::dvec4(truth.pixels[i]));
-        if (!(difference <= largest)) largest = difference;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            glm::dvec4 low(1e300), high(-1e300);
+            for (const glm::dvec2& offset : {glm::dvec2(0, 0), glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
+                const Light light = truth(glm::dvec2(x + 0.5, y + 0.5) + offset / 512.0);
+                low = glm::min(low, glm::dvec4(light.color, light.opacity));
+                high = glm::max(high, glm::dvec4(light.color, light.opacity));
+            }
+            for (int k = 0; k < 4; ++k) {
+                const double value = image.at(x, y)[k];
+                const double outside = std::max(low[k] - value, value - high[k]);
+                if (!(outside <= largest)) largest = outside;  // NaN is an error
+            }
+        }
     }
-    EXPECT_GT(defined, truth.pixels.size() * 98 / 100);
     return largest;
+}
+
+// Light through the unit cube where the scalar is linear: one segment, integrated to 1e-10.
+Truth truth_in_unit_cube(const Camera& camera, ImageSize size, const TransferFunction& transfer,
+                         const std::function<double(const glm::dvec3&)>& f) {
+    return [=, transform = ScreenTransform(camera, size)](const glm::dvec2& screen) {
+        const auto ray = transform.ray(screen);
+        const Chord chord = chord_in_unit_cube(ray, transform.perspective());
+        if (chord.length() <= 0) return Light{};
+        const auto at = [&](double t) { return f(ray.origin + t * ray.direction); };
+        return integrate_segment(transfer, at(chord.enter), at(chord.leave), chord.length());
+    };
 }
 
 class BothProjections : public testing::TestWithParam<Camera::Projection> {};
@@ -151,7 +143,7 @@ TEST_P(BothProjections, ConstantMediumInABox) {
     for (const glm::dvec3& from : {glm::dvec3(1.3, -2.1, 0.9), glm::dvec3(-0.4, 0.3, 2), glm::dvec3(1, 0.02, 0.01)}) {
         const Camera camera = view_of_unit_cube(GetParam(), from);
         const Scene scene = scene_of(grid_mesh(7), [](const glm::dvec3&) { return 3.0; }, constant_medium(extinction));
-        const Image truth = truth_in_unit_cube(camera, small, *scene.transfer, [](const glm::dvec3&) { return 3.0; });
+        const Truth truth = truth_in_unit_cube(camera, small, *scene.transfer, [](const glm::dvec3&) { return 3.0; });
         EXPECT_LT(error_against(truth, renderer().render(scene, camera, small)), 1e-4);
     }
 }
@@ -159,7 +151,7 @@ TEST_P(BothProjections, ConstantMediumInABox) {
 TEST_P(BothProjections, ConstantMediumInADelaunayMesh) {
     const Camera camera = view_of_unit_cube(GetParam());
     const Scene scene = scene_of(delaunay_mesh(3000, 3), linear, constant_medium(2.3));
-    const Image truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
+    const Truth truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
     EXPECT_LT(error_against(truth, renderer().render(scene, camera, small)), 1e-4);
 }
 
@@ -168,7 +160,7 @@ TEST_P(BothProjections, LinearFieldWithARamp) {
     for (const int cells : {1, 6, 24}) {
         const Camera camera = view_of_unit_cube(GetParam());
         const Scene scene = scene_of(grid_mesh(cells, 0.2, 5), linear, ramp());
-        const Image truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
+        const Truth truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
         EXPECT_LT(error_against(truth, renderer().render(scene, camera, small, {.table_size = 64})), 2e-3) << cells;
     }
 }
@@ -319,7 +311,7 @@ TEST(Renderer, ACameraInsideACellSeesIt) {
         Camera camera{.eye = {0.52, 0.47, 0.55}, .center = {0.9, 0.2, 0.7}, .up = {0, 0, 1}};
         camera.fov_y_degrees = 80;
         const Scene scene = scene_of(grid_mesh(cells), linear, ramp());
-        const Image truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
+        const Truth truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
         EXPECT_LT(error_against(truth, renderer().render(scene, camera, small)), 2e-3) << cells;
     }
 }
@@ -328,7 +320,7 @@ TEST(Renderer, ACameraInAFaceAndAtAVertexSeesTheMesh) {
     const Scene scene = scene_of(grid_mesh(4), linear, ramp());
     for (const glm::dvec3& eye : {glm::dvec3(0.25, 0.6, 0.6), glm::dvec3(0.5, 0.5, 0.5), glm::dvec3(0.25, 0.25, 0.6)}) {
         Camera camera{.eye = eye, .center = {0.97, 0.9, 0.8}, .up = {0, 0, 1}};
-        const Image truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
+        const Truth truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
         EXPECT_LT(error_against(truth, renderer().render(scene, camera, small)), 2e-3);
     }
 }
@@ -357,14 +349,15 @@ TEST(Renderer, EmissionWithoutExtinctionAdds) {
     const TransferFunction glow(OpticalModel::emitter, {{0, {0.2, 0.1, 0.05}}}, {{0, 0}});
     const Camera camera = view_of_unit_cube(Camera::Projection::parallel);
     const Scene scene = scene_of(grid_mesh(5), linear, glow);
-    const Image truth = truth_in_unit_cube(camera, small, glow, linear);
+    const Truth truth = truth_in_unit_cube(camera, small, glow, linear);
     EXPECT_LT(error_against(truth, renderer().render(scene, camera, small)), 1e-4);
 }
 
 TEST(Renderer, InvisibleCellsAreCulledAndThePictureIsTheSame) {
-    // Visible only above .6; the second function glows too faintly elsewhere to be seen, but is not zero.
+    // Visible only above 38/63, a texel of the table, so that its interpolation does not blur the edge; the second function
+    // glows too faintly elsewhere to be seen, but is not zero.
     const auto shell = [](double elsewhere) {
-        return TransferFunction(OpticalModel::density, {{0, {1, 1, 1}}}, {{0, elsewhere}, {0.6, elsewhere}, {0.8, 5}});
+        return TransferFunction(OpticalModel::density, {{0, {1, 1, 1}}}, {{0, elsewhere}, {38.0 / 63, elsewhere}, {0.8, 5}});
     };
     const Fixture fixture;
     Statistics culled, all;
@@ -449,8 +442,8 @@ TEST(Renderer, StatisticsAddUp) {
     renderer().render(scene_of(fixture.mesh, linear, ramp()), fixture.camera, small, {.table_size = 32}, &s);
     EXPECT_EQ(s.counts.cells, fixture.mesh.tets.size());
     EXPECT_EQ(s.counts.drawn + s.counts.culled, s.counts.cells);
-    EXPECT_GT(s.counts.triangles, s.counts.drawn * 2);
-    EXPECT_LE(s.counts.triangles, s.counts.drawn * 4);
+    EXPECT_GT(s.counts.triangles, s.counts.drawn);  // one or two each
+    EXPECT_LT(s.counts.triangles, s.counts.drawn * 2);
     EXPECT_EQ(s.counts.order_violations, 0U);
     EXPECT_EQ(s.method, "preint3d:32");
     EXPECT_NE(s.backend_version.find("Mesa"), std::string::npos);

@@ -54,7 +54,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
     const Program& program = cells.transform().perspective() ? perspective_ : parallel_;
-    set_uniforms(program, cells.transform());
+    set_uniforms(program, cells);
     program.use();
     draw(cells, order, statistics);
 
@@ -102,7 +102,8 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     table_texture_ = Texture3d(quality.table_size, texels);
 }
 
-void GlRenderer::set_uniforms(const Program& program, const ScreenTransform& transform) const {
+void GlRenderer::set_uniforms(const Program& program, const CellStream& cells) const {
+    const ScreenTransform& transform = cells.transform();
     const double length_scale = table_->length_scale() / prepared_->units().length;
     const double longest = table_->domain().max_length / prepared_->units().length;
     program.set("table_size", static_cast<float>(table_->size()));
@@ -111,6 +112,7 @@ void GlRenderer::set_uniforms(const Program& program, const ScreenTransform& tra
     if (!transform.perspective()) return;
     const glm::dvec2 center = transform.principal_point();
     program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
+    program.set("inverse_near", static_cast<float>(1.0 / cells.near_depth()));
     program.set("pixels_per_unit", static_cast<float>(transform.pixels_per_unit()));
 }
 

@@ -27,7 +27,7 @@ public:
 
 private:
     void prepare(const Scene& scene, const Quality& quality);
-    void set_uniforms(const Program& program, const ScreenTransform& transform) const;
+    void set_uniforms(const Program& program, const CellStream& cells) const;
     void draw(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
 
     OsmesaContext context_;

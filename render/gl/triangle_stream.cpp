@@ -12,7 +12,7 @@ namespace cellproj::gl {
 namespace {
 
 // The attribute locations of shaders/cell.vert.
-enum Attribute : GLuint { position = 0, terms = 1, bounds = 2 };
+enum Attribute : GLuint { position = 0, base = 1, ridges = 2, cell = 3 };
 
 constexpr GLuint vertex_binding = 0;
 
@@ -28,8 +28,9 @@ TriangleStream::TriangleStream() {
         glVertexArrayAttribBinding(name, location, vertex_binding);
     };
     attribute(position, 2, offsetof(StreamVertex, x));
-    attribute(terms, 4, offsetof(StreamVertex, front_depth));
-    attribute(bounds, 3, offsetof(StreamVertex, scalar_low));
+    attribute(base, 2, offsetof(StreamVertex, base_depth));
+    attribute(ridges, 3, offsetof(StreamVertex, ridges));
+    attribute(cell, 4, offsetof(StreamVertex, scalar_slope));
 }
 
 TriangleStream::~TriangleStream() {

@@ -1,8 +1,9 @@
 #version 450 core
 // SPDX-License-Identifier: BSD-3-Clause
 // One ray segment inside a cell, from the pre-integration table (classify/preintegration_table.hpp).
-in vec4 v_terms;
-flat in vec3 v_bounds;
+in vec2 v_base;
+in vec3 v_ridges;
+flat in vec4 v_cell;
 
 layout(binding = 0) uniform sampler3D table;  // (s_f, s_b, u(l)) -> effective emission g, mean extinction
 uniform float table_size;                     // texels per axis
@@ -10,6 +11,7 @@ uniform float inverse_length_scale;           // 1 / l0
 uniform float inverse_log_range;              // 1 / log2(1 + l_max / l0)
 uniform vec2 principal_point;                 // pixels
 uniform float pixels_per_unit;                // perspective: pixels per length at depth 1
+uniform float inverse_near;                   // perspective: 1 / depth of the near plane
 
 layout(location = 0) out vec4 light;  // associated colour, opacity
 
@@ -20,21 +22,26 @@ float attenuation_mean(float d) {
 }
 
 void main() {
+    float thickness = max(min(min(v_ridges.x, v_ridges.y), v_ridges.z), 0.0);
+    float other_scalar = v_base.y + v_cell.x * thickness;
+    bool base_is_front = v_cell.w > 0.0;
+    vec2 s = base_is_front ? vec2(v_base.y, other_scalar) : vec2(other_scalar, v_base.y);  // front, back
 #ifdef PERSPECTIVE
-    float inverse_front = v_terms.x;
-    float inverse_back = inverse_front - v_terms.y;
+    float front = base_is_front ? v_base.x : v_base.x + thickness;  // 1 / depth, nearer is larger
+    float back = front - thickness;
+    // Cells cut by the near plane are drawn from the eye on (cell_stream.hpp).
+    bool at_near_plane = front > 0.999 * inverse_near;
+    float depth_difference = at_near_plane ? 1.0 / back : thickness / (front * back);
+    s /= vec2(front, back);
     vec2 offset = (gl_FragCoord.xy - principal_point) / pixels_per_unit;
     float ray = length(vec3(offset, 1.0));
-    float depth_difference = v_terms.y / (inverse_front * inverse_back);
-    vec2 s = v_terms.zw / vec2(inverse_front, inverse_back);
 #else
+    float depth_difference = thickness;
     float ray = 1.0;
-    float depth_difference = v_terms.y;
-    vec2 s = v_terms.zw;
 #endif
     // Pixel centres just outside a sliver extrapolate; no segment leaves the cell's own range.
-    float segment = clamp(depth_difference, 0.0, v_bounds.z) * ray;
-    s = clamp(s, v_bounds.x, v_bounds.y);
+    float segment = min(depth_difference, abs(v_cell.w)) * ray;
+    s = clamp(s, v_cell.y, v_cell.z);
 
     float u = log2(1.0 + segment * inverse_length_scale) * inverse_log_range;
     vec3 texel = (vec3(s, u) * (table_size - 1.0) + 0.5) / table_size;
