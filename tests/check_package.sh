@@ -32,9 +32,17 @@ consumer() {
     quietly cmake -S "$source/tests/package" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
     quietly cmake --build "$folder" --target consumer
     local said
-    said=$("$folder/consumer") || fail "the consumer in $folder failed"
+    said=$(cd "$folder" && ./consumer) || fail "the consumer in $folder failed"
     [ "$said" = "order: 0" ] || fail "expected \"order: 0\", found \"$said\""
+    [ -s "$folder/tet.png" ] || fail "the consumer in $folder wrote no picture"
 }
+
+echo "check_package: the README's program is the consumer's"
+sed -n '/\/\/ README$/,/\/\/ end of README$/{//d;s/^    //;p}' "$source/tests/package/main.cpp" >"$scratch/lines"
+[ "$(wc -l <"$scratch/lines")" -ge 5 ] || fail "no lines for the README in tests/package/main.cpp"
+while IFS= read -r line; do
+    grep -qxF -e "$line" "$source/README.md" || fail "not in README.md: $line"
+done <"$scratch/lines"
 
 echo "check_package: installing $build"
 quietly cmake --install "$build" --prefix "$prefix"
