@@ -123,6 +123,20 @@ void print_line(const std::filesystem::path& file, const Statistics& s) {
                 s.counts.drawn, s.counts.cells, s.counts.triangles, s.ms.total, s.ms.sort, s.ms.project, s.ms.draw);
 }
 
+// The median over the pictures, without the first one, in which the driver compiles its shaders and tables are made.
+void print_median(const std::vector<Statistics>& pictures) {
+    if (pictures.size() < 3) return;
+    const auto median = [&](double (*stage)(const Statistics&)) {
+        std::vector<double> values;
+        for (std::size_t i = 1; i < pictures.size(); ++i) values.push_back(stage(pictures[i]));
+        std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+        return values[values.size() / 2];
+    };
+    std::printf("median of %zu views: %.0f ms (sort %.0f, project %.0f, draw %.0f)\n", pictures.size() - 1,
+                median([](const Statistics& s) { return s.ms.total; }), median([](const Statistics& s) { return s.ms.sort; }),
+                median([](const Statistics& s) { return s.ms.project; }), median([](const Statistics& s) { return s.ms.draw; }));
+}
+
 void render_pictures(const RenderOptions& options) {
     // Everything that can be refused without reading the mesh comes first.
     const ImageSize size = parse_size(options.size);
@@ -159,6 +173,7 @@ void render_pictures(const RenderOptions& options) {
         print_line(file, statistics);
         run.pictures.push_back(std::move(statistics));
     }
+    print_median(run.pictures);
     run.peak_memory_bytes = peak_memory_bytes();
     if (!options.stats.empty()) write_text_file(options.stats, to_json(run) + "\n");
 }
