@@ -19,8 +19,6 @@ namespace cellproj {
 // Volume cells, vertices in VTK's order. Other kinds are refused by `read`, with their names and counts.
 enum class CellKind : std::uint8_t { tetrahedron, hexahedron };
 
-const char* to_string(CellKind kind);
-
 // #C cells of mixed kind: the vertices of cell c are vertices[offsets[c] .. offsets[c+1]).
 struct CellList {
     std::vector<CellKind> kinds;          // #C

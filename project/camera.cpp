@@ -14,6 +14,8 @@ namespace cellproj {
 
 namespace {
 
+constexpr double frame_margin = 1.05;  // what is framed stays off the border
+
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 std::string text(const glm::dvec3& v) {
@@ -72,8 +74,28 @@ void validate(const Camera& camera, const std::string& place) {
 
 Camera frame_bounds(const Bounds& box, Camera::Projection projection, const glm::dvec3& from, const glm::dvec3& up,
                     double aspect) {
-    // The bounding sphere fits whatever the direction; a margin of 5 % keeps its silhouette off the border.
-    const double radius = box.diagonal() > 0 ? 0.525 * box.diagonal() : 1.0;
+    Camera camera = frame_sphere(box, projection, from, up, aspect);
+    if (box.diagonal() == 0) return camera;
+    // Seen from the sphere's camera: how far the corners reach across the view, and how near they come.
+    const double tangent = std::tan(glm::radians(camera.fov_y_degrees) / 2) / frame_margin;
+    const ScreenTransform transform(camera, {1, 1});
+    const double center_depth = transform.to_eye(camera.center).z;
+    double half_height = 0, distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p = transform.to_eye({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                               corner & 4 ? box.high.z : box.low.z});
+        const double across = std::max(std::abs(p.y), std::abs(p.x) / aspect);
+        half_height = std::max(half_height, across);
+        distance = std::max(distance, across / tangent - (p.z - center_depth));
+    }
+    camera.height = 2 * frame_margin * half_height;
+    if (projection == Camera::Projection::perspective) camera.eye = camera.center + distance * direction(from);
+    return camera;
+}
+
+Camera frame_sphere(const Bounds& box, Camera::Projection projection, const glm::dvec3& from, const glm::dvec3& up,
+                    double aspect) {
+    const double radius = box.diagonal() > 0 ? frame_margin * box.diagonal() / 2 : 1.0;
     Camera camera{.projection = projection, .eye = {}, .center = box.center(), .up = up};
     camera.height = 2 * radius / std::min(1.0, aspect);
     const double half_y = glm::radians(camera.fov_y_degrees) / 2;

@@ -44,8 +44,13 @@ struct Camera {
 // Throws Error (option) at `place` when eye = center, up is parallel to the view, a number is not finite or out of range.
 void validate(const Camera& camera, const std::string& place);
 
-// A camera that sees the whole box, in the given projection, from the direction `from` (from the box towards the eye).
+// A camera that sees the whole box from the direction `from` (from the box towards the eye), as large as fits a picture of
+// that aspect (width / height) with a margin of 5 %.
 Camera frame_bounds(const Bounds& box, Camera::Projection projection, const glm::dvec3& from, const glm::dvec3& up,
+                    double aspect);
+
+// The same for the sphere around the box: the box stays in view from every direction, as in an orbit.
+Camera frame_sphere(const Bounds& box, Camera::Projection projection, const glm::dvec3& from, const glm::dvec3& up,
                     double aspect);
 
 // The camera turned by `degrees` about the axis through its center along its up vector.

@@ -24,6 +24,9 @@ class Renderer {
 public:
     virtual ~Renderer() = default;
 
+    // Does now what the first picture of a scene would do besides drawing; later pictures find it done.
+    virtual void prepare(const Scene& scene, const Quality& quality = {}) = 0;
+
     // The associated picture, over nothing: the background is added when it is written. Throws Error (option) for an
     // unusable camera or size, Error (environment) when the driver fails.
     virtual Image render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality = {},

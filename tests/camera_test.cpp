@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -74,21 +75,31 @@ TEST(Camera, ParallelHeightAndPerspectiveAngleFillThePicture) {
     EXPECT_NEAR(perspective.to_screen(perspective.to_eye({0, 10, 0})).y, 0, 1e-12);
 }
 
-TEST_P(BothProjections, FrameBoundsSeesTheWholeBox) {
+// All corners are in the picture, and with frame_bounds one of them is at the margin: 5 % of the half size from the border.
+TEST_P(BothProjections, FramesSeeTheWholeBox) {
     std::mt19937_64 random(2);
     std::normal_distribution<double> normal;
     for (int i = 0; i < 200; ++i) {
         const glm::dvec3 from(normal(random), normal(random), normal(random));
         const Bounds box{{-1, 2, 5}, {3, 2.5, 11}};
         const ImageSize size{i % 2 ? 300 : 200, i % 2 ? 200 : 300};
-        const Camera camera = frame_bounds(box, GetParam(), from, {0.1, 0.2, 1}, double(size.width) / size.height);
-        const ScreenTransform transform(camera, size);
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 p = transform.to_eye({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                                                   corner & 4 ? box.high.z : box.low.z});
-            ASSERT_GT(p.z, 0);
-            const glm::dvec2 pixel = transform.to_screen(p);
-            EXPECT_TRUE(pixel.x > 0 && pixel.x < size.width && pixel.y > 0 && pixel.y < size.height);
+        const double aspect = double(size.width) / size.height;
+        for (const bool tight : {true, false}) {
+            const Camera camera = (tight ? frame_bounds : frame_sphere)(box, GetParam(), from, {0.1, 0.2, 1}, aspect);
+            const ScreenTransform transform(camera, size);
+            double reach = 0;  // 1: on the border
+            for (int corner = 0; corner < 8; ++corner) {
+                const glm::dvec3 p = transform.to_eye({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                                       corner & 4 ? box.high.z : box.low.z});
+                ASSERT_GT(p.z, 0);
+                const glm::dvec2 pixel = transform.to_screen(p);
+                reach = std::max({reach, std::abs(2 * pixel.x / size.width - 1), std::abs(2 * pixel.y / size.height - 1)});
+            }
+            if (tight) {
+                EXPECT_NEAR(reach, 1 / 1.05, 1e-9);
+            } else {
+                EXPECT_LT(reach, 1 / 1.05 + 1e-12);
+            }
         }
     }
 }

@@ -337,9 +337,8 @@ TEST(Renderer, CellFieldsAreConstantInACell) {
         field.values.push_back(z > 0.5 ? 1 : 0);
     }
     const TransferFunction transfer(OpticalModel::density, {{0, {0, 0, 1}}, {0.5, {0, 0, 1}}, {0.5, {1, 0, 0}}}, {{0, 1}, {1, 3}});
-    const Camera camera = view_of_unit_cube(Camera::Projection::parallel, {0.0, 0.0, 1.0001});
-    Camera from_above = camera;
-    from_above.up = {0, 1, 0};
+    const Camera from_above =
+        frame_bounds({glm::dvec3(0), glm::dvec3(1)}, Camera::Projection::parallel, {0, 0, 1}, {0, 1, 0}, 1.0);
     const Image image = renderer().render(scene_of(mesh, field, transfer), from_above, small);
     const double front = 1 - std::exp(-1.5), back = 1 - std::exp(-0.5);
     EXPECT_LT(max_difference(image.at(48, 48), {front, 0, (1 - front) * back, front + (1 - front) * back}), 1e-4);

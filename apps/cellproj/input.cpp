@@ -19,7 +19,8 @@ std::string cells_in_words(const Dataset& dataset) {
     for (const CellKind kind : dataset.cells.kinds) ++counts[kind];
     std::string text;
     for (const auto& [kind, count] : counts) {
-        text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + to_string(kind);
+        const char* plural = kind == CellKind::tetrahedron ? " tetrahedra" : " hexahedra";
+        text += (text.empty() ? "" : ", ") + std::to_string(count) + plural;
     }
     return text;
 }

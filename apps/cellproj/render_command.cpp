@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <vector>
@@ -47,11 +48,11 @@ std::vector<Camera> choose_cameras(const RenderOptions& options, const Input& in
     } else if (input.camera) {
         cameras = {*input.camera};
     } else {
-        cameras = {frame_bounds(bounds(input.mesh->points),
-                                options.projection == "parallel" ? Camera::Projection::parallel
-                                                                 : Camera::Projection::perspective,
-                                vector3(options.from), vector3(options.up),
-                                static_cast<double>(size.width) / size.height)};
+        const auto frame = options.frames > 1 ? frame_sphere : frame_bounds;
+        cameras = {frame(bounds(input.mesh->points),
+                         options.projection == "parallel" ? Camera::Projection::parallel
+                                                          : Camera::Projection::perspective,
+                         vector3(options.from), vector3(options.up), static_cast<double>(size.width) / size.height)};
         validate(cameras.front(), "--from, --up");
     }
     if (options.frames == 1) return cameras;
@@ -67,6 +68,17 @@ std::vector<Camera> choose_cameras(const RenderOptions& options, const Input& in
     return turned;
 }
 
+// The mean length of the rays through a mesh over all that meet its box: 4 · volume / surface of the box (Cauchy). Thin and sparse
+// meshes get more extinction by it than compact ones of the same diagonal.
+double mean_path(const TetMesh& mesh) {
+    double volume = 0;
+    for (CellId cell = 0; cell < mesh.tets.size(); ++cell) volume += std::abs(signed_volume(mesh, cell));
+    const Bounds box = bounds(mesh.points);
+    const glm::dvec3 edge = box.high - box.low;
+    const double surface = 2 * (edge.x * edge.y + edge.y * edge.z + edge.z * edge.x);
+    return volume > 0 && surface > 0 ? 4 * volume / surface : box.diagonal();
+}
+
 std::shared_ptr<const TransferFunction> choose_transfer(const RenderOptions& options, const Input& input,
                                                         const ScalarField& field) {
     if (!options.transfer.empty()) {
@@ -79,8 +91,8 @@ std::shared_ptr<const TransferFunction> choose_transfer(const RenderOptions& opt
         low = range(field.values).low;
         high = range(field.values).high;
     }
-    return std::make_shared<TransferFunction>(
-        default_transfer_function(low, high, bounds(input.mesh->points).diagonal()));
+    // A cube's diagonal is 2.6 times its mean path.
+    return std::make_shared<TransferFunction>(default_transfer_function(low, high, 2.6 * mean_path(*input.mesh)));
 }
 
 // picture.png → picture_007.png when there are several.
@@ -98,6 +110,13 @@ void write(const Image& image, const std::filesystem::path& file, const RenderOp
     } else {
         write_png(image, file, {.background = vector3(options.background), .bits = options.bits, .text = text});
     }
+}
+
+void warn_of_values(const ScalarField& field) {
+    const std::size_t bad = range(field.values).not_finite;
+    if (bad == 0) return;
+    std::fprintf(stderr, "cellproj: warning: field \"%s\": %zu of %zu values are not finite; cells that touch them are left out\n",
+                 field.name.c_str(), bad, field.values.size());
 }
 
 // No blank or doubtful picture without a word.
@@ -146,14 +165,19 @@ void render_pictures(const RenderOptions& options) {
     const Input input = load(options.input);
     const auto field =
         std::make_shared<const ScalarField>(select_scalar(*input.mesh, options.field, input.name));
+    warn_of_values(*field);
     const Scene scene{input.mesh, field, choose_transfer(options, input, *field)};
     const std::vector<Camera> cameras = choose_cameras(options, input, size);
 
     RunStatistics run;
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
-    const Stopwatch preparing;
     const auto renderer = make_renderer(Backend::gl_osmesa);
+    const Stopwatch preparing;
+    {
+        const Progress progress("preparing");
+        renderer->prepare(scene, options.quality);
+    }
     run.once_ms.prepare = preparing.ms();
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         const std::filesystem::path file = numbered(options.output, i, cameras.size());

@@ -33,13 +33,37 @@ GlRenderer::GlRenderer(OsmesaContext context)
 // The OpenGL objects below are deleted in their own context, whatever is current now.
 GlRenderer::~GlRenderer() { context_.make_current(); }
 
+// Brings what depends on the scene and the quality up to date; usually there is nothing to do.
+void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
+    context_.make_current();
+    const bool same_cells =
+        prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field;
+    const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
+    if (!same_cells) {
+        prepared_.emplace(scene);
+    } else if (!same_transfer) {
+        prepared_->set_transfer(scene.transfer);
+    }
+    if (same_transfer && table_ && table_->size() == quality.table_size) return;
+
+    table_.reset();  // no stale table behind a failure
+    const SceneUnits& units = prepared_->units();
+    // No segment is longer than the diagonal of the box.
+    table_.emplace(*scene.transfer, TableDomain{units.scalar_low, units.scalar_high, 2 * units.length},
+                   quality.table_size);
+    // Emission and extinction per mesh unit become those per unit of length of the scene.
+    std::vector<float> texels(table_->texels().size());
+    std::transform(table_->texels().begin(), table_->texels().end(), texels.begin(),
+                   [&](float x) { return static_cast<float>(x * units.length); });
+    table_texture_ = Texture3d(quality.table_size, texels);
+}
+
 Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality,
                          Statistics* out) {
     Statistics statistics;
     const Stopwatch total;
     validate(camera, "camera");
     validate(size, "size");
-    context_.make_current();
     prepare(scene, quality);
     if (target_.size().width != size.width || target_.size().height != size.height) target_ = FloatTarget(size);
     statistics.ms.plan = total.ms();
@@ -77,29 +101,6 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
         *out = std::move(statistics);
     }
     return image;
-}
-
-// Brings what depends on the scene and the quality up to date; usually there is nothing to do.
-void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
-    const bool same_cells =
-        prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field;
-    const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
-    if (!same_cells) {
-        prepared_.emplace(scene);
-    } else if (!same_transfer) {
-        prepared_->set_transfer(scene.transfer);
-    }
-    if (same_transfer && table_ && table_->size() == quality.table_size) return;
-
-    const SceneUnits& units = prepared_->units();
-    // No segment is longer than the diagonal of the box.
-    table_.emplace(*scene.transfer, TableDomain{units.scalar_low, units.scalar_high, 2 * units.length},
-                   quality.table_size);
-    // Emission and extinction per mesh unit become those per unit of length of the scene.
-    std::vector<float> texels(table_->texels().size());
-    std::transform(table_->texels().begin(), table_->texels().end(), texels.begin(),
-                   [&](float x) { return static_cast<float>(x * units.length); });
-    table_texture_ = Texture3d(quality.table_size, texels);
 }
 
 void GlRenderer::set_uniforms(const Program& program, const CellStream& cells) const {

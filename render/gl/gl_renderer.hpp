@@ -22,11 +22,11 @@ public:
     explicit GlRenderer(OsmesaContext context);
     ~GlRenderer() override;
 
+    void prepare(const Scene& scene, const Quality& quality) override;
     Image render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality,
                  Statistics* statistics) override;
 
 private:
-    void prepare(const Scene& scene, const Quality& quality);
     void set_uniforms(const Program& program, const CellStream& cells) const;
     void draw(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
 
