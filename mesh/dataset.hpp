@@ -16,10 +16,20 @@
 
 namespace cellproj {
 
-// Volume cells, vertices in VTK's order. Other kinds are refused by `read`, with their names and counts.
-enum class CellKind : std::uint8_t { tetrahedron, hexahedron };
+// Volume cells, vertices in VTK's order (wedge: VTK's own, whatever a file's format says; orientation is never trusted). Voxels are stored as
+// hexahedra; quadratic and Lagrange cells by their corners. A polyhedron stores a face stream instead of vertices: the number
+// of faces, then for each face the number of its vertices and their ids.
+enum class CellKind : std::uint8_t {
+    tetrahedron,
+    hexahedron,
+    wedge,
+    pyramid,
+    pentagonal_prism,
+    hexagonal_prism,
+    polyhedron
+};
 
-// #C cells of mixed kind: the vertices of cell c are vertices[offsets[c] .. offsets[c+1]).
+// #C cells of mixed kind: the vertices (or the face stream) of cell c are vertices[offsets[c] .. offsets[c+1]).
 struct CellList {
     std::vector<CellKind> kinds;          // #C
     std::vector<std::uint64_t> offsets;   // #C + 1, first 0
