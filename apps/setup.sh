@@ -10,7 +10,7 @@ packages=(
     cmake ninja-build g++ pkg-config git
     # reading meshes
     libvtk9-dev
-    # exact signs (CGAL's kernels over GMP); the mesher's program: TetGen
+    # exact signs (CGAL's kernels over GMP); the mesher's program: TetGen, and CGAL's repair of surfaces
     libcgal-dev libtet1.5-dev
     # vectors, threads
     libglm-dev libtbb-dev

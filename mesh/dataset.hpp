@@ -16,9 +16,10 @@
 
 namespace cellproj {
 
-// Volume cells, vertices in VTK's order (wedge: VTK's own, whatever a file's format says; orientation is never trusted). Voxels are stored as
-// hexahedra; quadratic and Lagrange cells by their corners. A polyhedron stores a face stream instead of vertices: the number
-// of faces, then for each face the number of its vertices and their ids.
+// Volume cells, vertices in VTK's order (a wedge or prism: one end, then the other in the same order; which way round is
+// never trusted). Voxels are stored as hexahedra; quadratic, Lagrange and Bézier cells by their corners, so curved edges
+// become straight. A polyhedron stores a face stream instead of vertices: the number of faces, then for each face the
+// number of its vertices and their ids in cyclic order.
 enum class CellKind : std::uint8_t {
     tetrahedron,
     hexahedron,
@@ -54,6 +55,13 @@ struct Dataset {
     std::vector<Field> point_fields;           // each with #P rows
     std::vector<Field> cell_fields;            // each with one row per cell
     std::size_t skipped_cells = 0;             // cells that are no volumes: points, lines, surfaces
+    std::size_t ghost_cells = 0;               // volume cells left out: hidden, or copies of another part's cells
+
+    // Files of several blocks or time steps; empty for the others.
+    std::vector<std::string> blocks;           // names of all volume blocks of the file, read or not
+    std::size_t skipped_blocks = 0;            // blocks without volume cells
+    std::vector<double> times;                 // of all time steps, ascending
+    std::optional<double> time;                // the one that was read
 
     std::size_t cell_count() const { return grid ? grid->cells() : cells.size(); }
 };

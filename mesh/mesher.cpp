@@ -127,6 +127,30 @@ std::vector<std::filesystem::path> mesher_candidates() {
     return candidates;
 }
 
+struct Reply {
+    std::string place;  // for messages about it
+    std::string bytes;
+};
+
+Reply ask(const std::string& request, const MesherOptions& options) {
+    const std::filesystem::path program = options.program.empty() ? find_mesher() : options.program;
+    // More output than was announced, or none that could become an answer: no use in waiting for the rest.
+    const auto is_garbage = [](std::string_view output) {
+        const auto size = announced_answer_size(output);
+        return size && output.size() > *size;
+    };
+    ChildResult result = run_child(program, request, options.timeout_seconds, is_garbage);
+    require_success(result, program.string(), options.timeout_seconds);
+    return {"answer of " + program.string(), std::move(result.output)};
+}
+
+TetMesh to_mesh(const Reply& reply) {
+    TetMesh mesh = decode_answer(reply.bytes, reply.place);
+    validate_answer(mesh, reply.place);
+    orient_cells(mesh);
+    return mesh;
+}
+
 }  // namespace
 
 std::filesystem::path find_mesher() {
@@ -152,21 +176,20 @@ std::filesystem::path find_mesher() {
 TetMesh tetrahedralize(const PiecewiseLinearComplex& complex, const MesherOptions& options) {
     validate(options);
     validate(complex, "piecewise-linear complex");
-    const std::filesystem::path program = options.program.empty() ? find_mesher() : options.program;
+    return to_mesh(ask(encode_request(complex, options.max_volume, options.radius_edge_ratio), options));
+}
 
-    // More output than was announced, or none that could become an answer: no use in waiting for the rest.
-    const auto is_garbage = [](std::string_view output) {
-        const auto size = announced_answer_size(output);
-        return size && output.size() > *size;
-    };
-    const std::string request = encode_request(complex, options.max_volume, options.radius_edge_ratio);
-    const ChildResult result = run_child(program, request, options.timeout_seconds, is_garbage);
-    require_success(result, program.string(), options.timeout_seconds);
-
-    const std::string place = "answer of " + program.string();
-    TetMesh mesh = decode_answer(result.output, place);
-    validate_answer(mesh, place);
-    orient_cells(mesh);
+TetMesh tetrahedralize(const Surface& surface, const MesherOptions& options) {
+    validate(options);
+    validate(surface);
+    const SurfaceRequest request{{surface.name, surface.points, surface.polygons, {}},
+                                 options.fill_holes,
+                                 options.max_volume,
+                                 options.radius_edge_ratio};
+    const Reply reply = ask(encode_request(request), options);
+    if (is_refusal(reply.bytes)) throw decode_refusal(reply.bytes, reply.place, surface.name);
+    TetMesh mesh = to_mesh(reply);
+    carry_fields(surface, mesh);
     return mesh;
 }
 

@@ -11,6 +11,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "mesh/surface.hpp"
 #include "mesh/tet_mesh.hpp"
 
 namespace cellproj {
@@ -33,6 +34,7 @@ struct PiecewiseLinearComplex {
 struct MesherOptions {
     double max_volume = 0.0;              // largest cell anywhere [mesh units³]; 0: no bound
     double radius_edge_ratio = 0.0;       // largest circumradius / shortest edge, e.g. 1.414; 0: no quality refinement
+    bool fill_holes = false;              // of a Surface: cap its open ends with triangles
     double timeout_seconds = 300.0;       // the process is killed after that
     std::filesystem::path program;        // the mesher; empty: found by `find_mesher`
 };
@@ -45,5 +47,11 @@ std::filesystem::path find_mesher();
 // unusable complex (ids out of range, NaN), Error (mesher) when the process reports a failure, dies of a signal, answers
 // with garbage, produces no cells, or exceeds its time.
 TetMesh tetrahedralize(const PiecewiseLinearComplex& complex, const MesherOptions& options = {});
+
+// Meshes the inside of a surface: coincident points are merged, facets turned to agree, open edges that coincide joined
+// first. A closed sheet within another bounds a cavity. Fields come as `carry_fields` says. Throws Error (data), naming the
+// surface, for one that is flat, open, non-manifold or intersects itself, with counts and the first offenders by facet; and
+// as above.
+TetMesh tetrahedralize(const Surface& surface, const MesherOptions& options = {});
 
 }  // namespace cellproj

@@ -16,10 +16,31 @@ namespace cellproj {
 namespace {
 
 constexpr std::string_view magic = "cpmesher";
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 constexpr std::size_t header_size = 8 + 4 + 4 + 8;
 
-enum class Kind : std::uint32_t { request = 1, answer = 2 };
+enum class Kind : std::uint32_t { request = 1, answer = 2, surface_request = 3, refusal = 4 };
+
+const char* in_words(Kind kind) {
+    switch (kind) {
+        case Kind::request:
+            return "a request (kind 1)";
+        case Kind::answer:
+            return "an answer (kind 2)";
+        case Kind::surface_request:
+            return "a surface request (kind 3)";
+        case Kind::refusal:
+            break;
+    }
+    return "a refusal (kind 4)";
+}
+
+bool is_of(Kind kind, std::string_view message) {
+    std::uint32_t found = 0;
+    if (message.size() < header_size || !message.starts_with(magic)) return false;
+    std::memcpy(&found, message.data() + magic.size() + sizeof(version), sizeof(found));
+    return found == static_cast<std::uint32_t>(kind);
+}
 
 // TetGen numbers with int and addresses three coordinates per point with them.
 constexpr std::size_t max_mesher_points = std::numeric_limits<std::int32_t>::max() / 4;
@@ -39,6 +60,11 @@ public:
     void array(const std::vector<T>& numbers) {
         static_assert(std::is_trivially_copyable_v<T>);
         body_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T));
+    }
+
+    void text(const std::string& words) {
+        value(std::uint64_t{words.size()});
+        body_ += words;
     }
 
     std::string message(Kind kind) const {
@@ -85,6 +111,11 @@ public:
         return numbers;
     }
 
+    std::string text(const char* what) {
+        const auto letters = array<char>(value<std::uint64_t>("length"), what);
+        return {letters.begin(), letters.end()};
+    }
+
     void header(Kind expected) {
         const std::string_view start = bytes_.substr(0, magic.size());
         if (start != magic)
@@ -94,8 +125,7 @@ public:
             fail("version " + std::to_string(version) + " of the exchange format", "version " + std::to_string(v));
         }
         if (const auto kind = value<std::uint32_t>("kind"); kind != static_cast<std::uint32_t>(expected)) {
-            fail(expected == Kind::request ? "a request (kind 1)" : "an answer (kind 2)",
-                 "kind " + std::to_string(kind));
+            fail(in_words(expected), "kind " + std::to_string(kind));
         }
         if (const auto size = value<std::uint64_t>("body size"); size != bytes_.size()) {
             fail("a body of " + std::to_string(size) + " bytes", std::to_string(bytes_.size()) + " bytes");
@@ -113,6 +143,21 @@ private:
 
 bool finite(const glm::dvec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+// All polygons in two arrays.
+struct FlatPolygons {
+    std::vector<std::uint32_t> sizes;
+    std::vector<VertexId> vertices;
+};
+
+FlatPolygons flatten(const std::vector<std::vector<VertexId>>& polygons) {
+    FlatPolygons flat;
+    for (const std::vector<VertexId>& polygon : polygons) {
+        flat.sizes.push_back(static_cast<std::uint32_t>(polygon.size()));
+        flat.vertices.insert(flat.vertices.end(), polygon.begin(), polygon.end());
+    }
+    return flat;
 }
 
 std::vector<std::vector<VertexId>> split_facets(const std::vector<std::uint32_t>& sizes,
@@ -177,12 +222,7 @@ void validate(const PiecewiseLinearComplex& complex, const std::string& place) {
 }
 
 std::string encode_request(const PiecewiseLinearComplex& complex, double max_volume, double radius_edge_ratio) {
-    std::vector<std::uint32_t> sizes;
-    std::vector<VertexId> vertices;
-    for (const std::vector<VertexId>& facet : complex.facets) {
-        sizes.push_back(static_cast<std::uint32_t>(facet.size()));
-        vertices.insert(vertices.end(), facet.begin(), facet.end());
-    }
+    const auto [sizes, vertices] = flatten(complex.facets);
     Writer writer;
     writer.value(max_volume);
     writer.value(radius_edge_ratio);
@@ -214,6 +254,65 @@ MeshingRequest decode_request(std::string_view message, const std::string& place
     request.complex.regions = reader.array<Region>(counts[4], "regions");
     reader.end();
     return request;
+}
+
+std::string encode_request(const SurfaceRequest& request) {
+    const auto [sizes, vertices] = flatten(request.surface.polygons);
+    Writer writer;
+    writer.value(request.max_volume);
+    writer.value(request.radius_edge_ratio);
+    writer.value(std::uint64_t{request.fill_holes});
+    writer.value(std::uint64_t{request.surface.points.size()});
+    writer.value(std::uint64_t{sizes.size()});
+    writer.value(std::uint64_t{vertices.size()});
+    writer.array(request.surface.points);
+    writer.array(sizes);
+    writer.array(vertices);
+    return writer.message(Kind::surface_request);
+}
+
+SurfaceRequest decode_surface_request(std::string_view message, const std::string& place) {
+    Reader reader(message, place);
+    reader.header(Kind::surface_request);
+    SurfaceRequest request;
+    request.surface.name = place;
+    request.max_volume = reader.value<double>("largest volume");
+    request.radius_edge_ratio = reader.value<double>("radius-edge ratio");
+    const auto counts = reader.array<std::uint64_t>(4, "counts");
+    request.fill_holes = counts[0] != 0;
+    request.surface.points = reader.array<glm::dvec3>(counts[1], "points");
+    const auto sizes = reader.array<std::uint32_t>(counts[2], "polygon sizes");
+    const auto vertices = reader.array<VertexId>(counts[3], "polygon vertices");
+    request.surface.polygons = split_facets(sizes, vertices, reader);
+    reader.end();
+    return request;
+}
+
+bool is_surface_request(std::string_view message) {
+    return is_of(Kind::surface_request, message);
+}
+
+bool is_refusal(std::string_view message) {
+    return is_of(Kind::refusal, message);
+}
+
+std::string encode_refusal(const Error& error) {
+    Writer writer;
+    writer.text(error.expected());
+    writer.text(error.found());
+    writer.text(error.advice());
+    return writer.message(Kind::refusal);
+}
+
+Error decode_refusal(std::string_view message, const std::string& place, const std::string& subject) {
+    Reader reader(message, place);
+    reader.header(Kind::refusal);
+    ErrorParts parts{.kind = ErrorKind::data, .place = subject, .expected = {}, .found = {}, .advice = {}};
+    parts.expected = reader.text("expectation");
+    parts.found = reader.text("finding");
+    parts.advice = reader.text("advice");
+    reader.end();
+    return Error(parts);
 }
 
 std::string encode_answer(const TetMesh& mesh) {

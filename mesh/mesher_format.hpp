@@ -4,12 +4,17 @@
 // file; it knows nothing of how the other side makes its cells.
 //
 //   message := header, body
-//   header  := magic "cpmesher" (8 bytes), u32 version = 1, u32 kind (1 request, 2 answer), u64 size of the body
+//   header  := magic "cpmesher" (8 bytes), u32 version = 2, u32 kind (1 request, 2 answer, 3 surface request, 4 refusal),
+//              u64 size of the body
 //   [bytes] request := f64 max_volume, f64 radius_edge_ratio, u64 #P, u64 #F, u64 #V, u64 #H, u64 #R,
 //              #P points (3 f64), #F facet sizes (u32, their sum is #V), #V facet vertices (u32, 0-based, facet after
 //              facet), #H holes (3 f64), #R regions (3 f64 seed, f64 attribute, f64 max_volume)
 //   answer  := u64 #P, u64 #T, u64 #A (0 or #T), #P points (3 f64), #T tets (4 u32, 0-based), #A region attributes
 //   (f64)
+//   surface request := f64 max_volume, f64 radius_edge_ratio, u64 fill_holes (0 or 1), u64 #P, u64 #F, u64 #V, #P points,
+//              #F polygon sizes (u32), #V polygon vertices (u32)
+//   refusal := what was expected, what was found, what to do: three times u64 length, UTF-8 text. The answer to a surface
+//              that cannot be made a closed boundary.
 //
 // Numbers stand in the byte order of the machine, on which both programs run. Nothing follows the body.
 #pragma once
@@ -19,7 +24,9 @@
 #include <string>
 #include <string_view>
 
+#include "mesh/error.hpp"
 #include "mesh/mesher.hpp"
+#include "mesh/surface.hpp"
 #include "mesh/tet_mesh.hpp"
 
 namespace cellproj {
@@ -30,6 +37,13 @@ struct MeshingRequest {
     double radius_edge_ratio = 0.0;  // 0: no quality refinement
 };
 
+struct SurfaceRequest {
+    Surface surface;                 // points and polygons only
+    bool fill_holes = false;
+    double max_volume = 0.0;         // as above
+    double radius_edge_ratio = 0.0;
+};
+
 // Throws Error (data), naming `place`: fewer than 4 points or more than the mesher can count, a point, hole or region
 // that is not finite, a facet with fewer than 3 vertices, a vertex id out of range.
 void validate(const PiecewiseLinearComplex& complex, const std::string& place);
@@ -38,10 +52,20 @@ std::string encode_request(const PiecewiseLinearComplex& complex, double max_vol
 // Points, cells and, if there is one, the cell field "region"; every other field stays behind.
 std::string encode_answer(const TetMesh& mesh);
 
+std::string encode_request(const SurfaceRequest& request);
+std::string encode_refusal(const Error& error);
+
+// Whether a message says it is a surface request, a refusal; nothing else of it is checked.
+bool is_surface_request(std::string_view message);
+bool is_refusal(std::string_view message);
+
 // The decoders check magic, version, kind, and every count against the bytes that are there; what the numbers mean
 // (ids, finite points) is left to the two `validate`. Throw Error (mesher), naming `place`.
 MeshingRequest decode_request(std::string_view message, const std::string& place);
+SurfaceRequest decode_surface_request(std::string_view message, const std::string& place);
 TetMesh decode_answer(std::string_view message, const std::string& place);
+// As an Error (data) about `subject`.
+Error decode_refusal(std::string_view message, const std::string& place, const std::string& subject);
 
 // The size of the answer that starts with these bytes: empty while its header is incomplete, 0 when they cannot become
 // an answer.

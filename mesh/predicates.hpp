@@ -31,6 +31,12 @@ int orientation(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, c
 // fourth vertex). 0: the plane is edge-on, or the triangle is degenerate. Exact as `orientation`.
 int side_of_plane(const Eye& eye, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
+// +1 when e lies strictly inside the sphere through a, b, c, d, −1 when strictly outside, 0 on it, for a positively oriented
+// tetrahedron (the other way round for a negative one; 0 for a flat one whose plane holds e). Exact as `orientation`,
+// for magnitudes between 1e-60 and 1e60.
+int side_of_circumsphere(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d,
+                         const glm::dvec3& e);
+
 // det(b−a, c−a) in the plane, twice the signed area of the triangle: positive when a, b, c turn from +x towards +y. The
 // value is float64 rounded, its sign (0 included) is exact as that of `orientation`.
 double doubled_area(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c);

@@ -1,28 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files to datasets. All formats are read through VTK's readers; built without VTK, `read` throws Error (environment).
+// Files to datasets. TetGen, Gmsh, Medit and SU2 files are read by readers of our own, all others through VTK's
+// readers; built without VTK, `read` throws Error (environment) for these.
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "mesh/dataset.hpp"
 
 namespace cellproj {
 
 struct ReadOptions {
-    std::filesystem::path solution;  // PLOT3D: the solution (Q) file that belongs to the grid; empty: none
+    std::filesystem::path solution = {};  // PLOT3D: the solution (Q) file that belongs to the grid; empty: none
+    std::vector<std::string> blocks =
+        {};                           // the blocks to read, by name or by the first or last parts of it; empty: all
+    std::optional<double> time = {};  // the nearest time step is read; none: the last
 };
 
-// Reads VTK XML unstructured (.vtu) and legacy VTK (.vtk, unstructured) files with tetrahedra and hexahedra, and
-// single-block PLOT3D grids with, if `solution` is given, the fields Density, Momentum, StagnationEnergy, Pressure, Mach
-// and VelocityMagnitude. The format is told by content first and by the file's suffix second. Cells that are no volumes
-// are skipped and counted. VTK's own messages are caught, not printed; reads in several threads wait for each other.
-// Throws Error:
-// - file: missing, a folder, unreadable;
-// - format: not recognised, truncated, malformed, another VTK dataset type;
-// - data: no volume cells, cells of an unsupported kind, points that are not finite, vertex ids out of range, a PLOT3D
-//   grid of several blocks or with blanked points, a solution of another size;
-// - option: a solution given for a file that is no PLOT3D grid.
+// Reads
+// - VTK XML: unstructured, structured, rectilinear and image grids (.vtu .vts .vtr .vti), partitioned (.pvtu .pvts
+// .pvtr
+//   .pvti), multi-block (.vtm) and collections, which are time series (.pvd); legacy VTK of the same four kinds (.vtk);
+// - OpenFOAM cases, reconstructed or decomposed, given by their folder, system/controlDict or a file .foam: the
+// internal
+//   mesh of each region with its cell fields;
+// - EnSight Gold (.case), Exodus II (.e .ex2 .exo; displacements are a field, not applied), CGNS (ADF and HDF5);
+// - MetaImage (.mhd .mha) and NRRD (.nrrd .nhdr) volumes, one point per voxel (NRRD: at least 10 voxels along the first
+//   axis; VTK takes a shorter one for components, which gives an Error);
+// - PLOT3D grids with, if `solution` is given, their fields (read_plot3d.cpp says which);
+// - TetGen, Gmsh, Medit and SU2 (text_formats.hpp).
+// The format is told by content first and by the file's suffix second. Structured, rectilinear and image grids become
+// curvilinear ones. All volume blocks of a file become one mesh, points unmerged and with NaN where a block lacks a
+// field; other blocks and other cells are skipped and counted. VTK's own messages are caught, not printed; reads in
+// several threads wait for each other. EnSight, Exodus, CGNS, MetaImage and NRRD files are read twice, first in a child
+// process, as VTK's readers of these may crash on damaged ones. Throws Error:
+// - file: missing, a folder that is no case, unreadable;
+// - format: not recognised, truncated, malformed, a part of it (a piece, a file of the case) missing;
+// - data: no volume cells, cells of an unsupported kind, grids with one point in a direction, points that are not
+// finite,
+//   vertex ids out of range, a solution of another size;
+// - option: a solution given for a file that is no PLOT3D grid, a block that does not exist (the message lists those
+// that
+//   do), a time or blocks chosen in a file that has none.
 Dataset read(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace cellproj

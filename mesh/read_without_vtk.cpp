@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stands in for read_vtk.cpp and read_plot3d.cpp where VTK is switched off.
+// Stands in for the readers that need VTK where it is switched off.
 #include "mesh/error.hpp"
-#include "mesh/read.hpp"
+#include "mesh/vtk_readers.hpp"
 
 namespace cellproj {
 
-Dataset read(const std::filesystem::path& file, const ReadOptions&) {
+Dataset read_with_vtk(FileFormat format, const std::filesystem::path& file, const ReadOptions&) {
     throw Error({.kind = ErrorKind::environment,
                  .place = file.string(),
-                 .expected = "a cellproj built with VTK, whose readers read mesh files",
-                 .found = "one built without",
+                 .expected = std::string("a cellproj built with VTK, whose readers read the format ") + name(format),
+                 .found = "one built without, which reads TetGen, Gmsh, Medit and SU2 files only",
                  .advice = "install VTK 9 (Debian: libvtk9-dev) and build with -DCELLPROJ_WITH_VTK=ON"});
 }
 

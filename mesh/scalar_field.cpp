@@ -7,6 +7,8 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include "mesh/error.hpp"
 
@@ -55,11 +57,16 @@ std::string describe(const std::vector<FoundField>& all) {
     return list;
 }
 
-FoundField find_field(const std::vector<FoundField>& all, const std::string& name, const std::string& place) {
+// Null where there is none.
+const FoundField* find_field(const std::vector<FoundField>& all, const std::string& name) {
     const std::string spelling = existing_spelling(all, name);
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const FoundField& one) { return one.field->name == spelling; });
-    if (found != all.end()) return *found;
+    return found != all.end() ? &*found : nullptr;
+}
+
+[[noreturn]] void throw_unknown_field(const std::vector<FoundField>& all, const std::string& name,
+                                      const std::string& place) {
     std::vector<std::string> names;
     for (const FoundField& one : all)
         names.push_back(one.field->name);
@@ -68,6 +75,36 @@ FoundField find_field(const std::vector<FoundField>& all, const std::string& nam
                  .expected = "one of the fields " + describe(all),
                  .found = "no field \"" + name + "\"",
                  .advice = "did you mean \"" + nearest_name(name, names) + "\"?"});
+}
+
+constexpr std::string_view axes = "xyz";
+
+std::string component_name(int component, int components) {
+    return components <= 3 ? std::string(1, axes[static_cast<std::size_t>(component)]) : std::to_string(component);
+}
+
+// "y" and "1" are 1. Throws Error (option) when the field has no such component.
+int parse_component(const std::string& word, const Field& field, const std::string& place) {
+    for (int component = 0; component < field.components; ++component) {
+        const bool axis = component < 3 && word.size() == 1 && equal_ignoring_case(word, component_name(component, 3));
+        if (axis || word == std::to_string(component)) return component;
+    }
+    const std::string last = std::to_string(field.components - 1);
+    throw Error({.kind = ErrorKind::option,
+                 .place = place,
+                 .expected = "a component of \"" + field.name + "\": 0 to " + last + ", or x, y, z for the first three",
+                 .found = "\"" + word + "\"",
+                 .advice = "name the field alone for its magnitude"});
+}
+
+// "U", "U:z".
+ScalarField scalar_by_name(const std::vector<FoundField>& all, const std::string& name, const std::string& place) {
+    if (const FoundField* whole = find_field(all, name)) return as_scalar(*whole->field, whole->location);
+    const std::size_t colon = name.rfind(':');
+    if (colon == std::string::npos) throw_unknown_field(all, name, place);
+    const FoundField* found = find_field(all, name.substr(0, colon));
+    if (!found) throw_unknown_field(all, name.substr(0, colon), place);
+    return as_scalar(*found->field, found->location, parse_component(name.substr(colon + 1), *found->field, place));
 }
 
 FoundField default_field(const std::vector<FoundField>& all) {
@@ -104,12 +141,51 @@ ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const st
                      .found = "none",
                      .advice = "write the file with the quantity that is to be drawn"});
     }
-    const auto [field, location] = name.empty() ? default_field(all) : find_field(all, name, place);
+    if (!name.empty()) return scalar_by_name(all, name, place);
+    const auto [field, location] = default_field(all);
     return as_scalar(*field, location);
 }
 
 ScalarField as_scalar(const Field& field, FieldLocation location) {
     return {field.name, location, magnitudes(field)};
+}
+
+ScalarField as_scalar(const Field& field, FieldLocation location, int component) {
+    assert(component >= 0 && component < field.components);
+    if (field.components == 1) return as_scalar(field, location);
+    const auto components = static_cast<std::size_t>(field.components);
+    ScalarField result{field.name + ":" + component_name(component, field.components), location, {}};
+    result.values.reserve(field.values.size() / components);
+    for (auto at = static_cast<std::size_t>(component); at < field.values.size(); at += components)
+        result.values.push_back(field.values[at]);
+    return result;
+}
+
+ScalarField averaged_to_points(const TetMesh& mesh, const ScalarField& field) {
+    if (field.location == FieldLocation::points) return field;
+    assert(field.values.size() == mesh.tets.size());
+    std::vector<double> sums(mesh.points.size(), 0.0);
+    std::vector<double> weights(mesh.points.size(), 0.0);
+    for (CellId c = 0; c < mesh.tets.size(); ++c) {
+        const double volume = std::abs(signed_volume(mesh, c));
+        if (!(volume > 0.0)) continue;
+        for (const VertexId v : mesh.tets[c]) {
+            sums[v] += volume * field.values[c];
+            weights[v] += volume;
+        }
+    }
+    // Below 0: minus the number of flat cells around a point that has no others.
+    for (CellId c = 0; c < mesh.tets.size(); ++c) {
+        for (const VertexId v : mesh.tets[c]) {
+            if (weights[v] > 0.0) continue;
+            sums[v] -= field.values[c];
+            weights[v] -= 1.0;
+        }
+    }
+    ScalarField result{field.name, FieldLocation::points, std::move(sums)};
+    for (std::size_t v = 0; v < result.values.size(); ++v)
+        result.values[v] /= weights[v];  // 0 / 0, NaN, for points without cells
+    return result;
 }
 
 ScalarRange range(const std::vector<double>& values) {

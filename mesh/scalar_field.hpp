@@ -14,9 +14,9 @@ namespace cellproj {
 enum class FieldLocation { points, cells };
 
 struct ScalarField {
-    std::string name;                 // as the user would type it
+    std::string name;  // as the user would type it
     FieldLocation location = FieldLocation::points;
-    std::vector<double> values;       // #P or #T; may hold NaN and infinities
+    std::vector<double> values;  // #P or #T; may hold NaN and infinities
 
     double at(const TetMesh& mesh, CellId cell, int corner) const {
         return location == FieldLocation::points ? values[mesh.tets[cell][static_cast<std::size_t>(corner)]]
@@ -25,14 +25,26 @@ struct ScalarField {
 };
 
 // The field called `name`, point fields before cell fields; a vector or tensor gives its magnitude (root of the sum of
-// squares). Without an exact match, a match that differs in upper and lower case only is taken if it is the only one.
-// An empty name chooses the first scalar point field, then the first scalar cell field, then the first field of all.
-// Throws Error (option) when there is no such field (the message lists those that exist), Error (data) when there is none
-// at all. `place` names the file in messages.
+// squares), or one component of it by "name:x", "name:y", "name:z" or "name:0", "name:1", … Names that hold a colon
+// themselves are found first. Without an exact match, a match that differs in upper and lower case only is taken if it
+// is the only one. An empty name chooses the first scalar point field, then the first scalar cell field, then the first
+// field of all. Throws Error (option) when there is no such field (the message lists those that exist) or no such
+// component, Error (data) when there is no field at all. `place` names the file in messages.
 ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const std::string& place);
 
 // A field as a scalar: itself if it has one component, else the magnitude of each row.
 ScalarField as_scalar(const Field& field, FieldLocation location);
+
+// Component `component` (0 ≤ component < field.components) of each row, named "name:x" for the first three of fields of
+// up to three components, "name:3" otherwise. Of a scalar: the field itself.
+ScalarField as_scalar(const Field& field, FieldLocation location, int component);
+
+// A field on cells, carried to the points: the mean over the cells around each point, weighted by their volumes (equal
+// weights where all of them are flat). A constant stays that constant; what is linear in space is off by less than its
+// change over the largest cell around the point, and not at all where the cells lie symmetrically around it. NaN and
+// infinities spread to all points of their cells; points without cells get NaN. A field on points comes back as it is.
+// Where not asked for, nothing is averaged: cell fields are drawn constant per cell, which is what the solver said.
+ScalarField averaged_to_points(const TetMesh& mesh, const ScalarField& field);
 
 struct ScalarRange {
     double low = 0.0;

@@ -3,16 +3,29 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <span>
 #include <utility>
 
+#include "mesh/cell_faces.hpp"
+#include "mesh/cell_split.hpp"
 #include "mesh/error.hpp"
+#include "mesh/predicates.hpp"
 
 namespace cellproj {
 
 namespace {
 
 using Tet = std::array<VertexId, 4>;
+
+void require_addressable(std::size_t count, const char* what, const std::string& place) {
+    if (count <= max_elements) return;
+    throw Error({.kind = ErrorKind::data,
+                 .place = place,
+                 .expected = "at most " + std::to_string(max_elements) + " " + what + " (ids have 32 bits)",
+                 .found = std::to_string(count),
+                 .advice = "cut the data into parts"});
+}
 
 // ---- Curvilinear grids: the alternating split ----
 
@@ -44,94 +57,126 @@ void split_grid(const GridDimensions& grid, std::vector<Tet>& tets) {
     }
 }
 
-// ---- Cells of unstructured grids: the pulling split ----
+// ---- Cells of unstructured grids ----
 
-// The corners of a face, counter-clockwise as seen from outside the cell.
-struct CellFace {
-    std::size_t size;
-    std::array<std::size_t, 4> corners;
-};
-
-constexpr std::array<CellFace, 6> hexahedron_faces{
-    {{4, {0, 3, 2, 1}}, {4, {4, 5, 6, 7}}, {4, {0, 1, 5, 4}}, {4, {1, 2, 6, 5}}, {4, {2, 3, 7, 6}}, {4, {3, 0, 4, 7}}}};
-
-bool has_repeated_vertex(const Tet& t) {
-    return t[0] == t[1] || t[0] == t[2] || t[0] == t[3] || t[1] == t[2] || t[1] == t[3] || t[2] == t[3];
+std::span<const VertexId> list_of(const CellList& cells, std::size_t cell) {
+    return std::span(cells.vertices).subspan(cells.offsets[cell], cells.offsets[cell + 1] - cells.offsets[cell]);
 }
 
-// Joins the lowest vertex of the cell with the triangles of the faces that do not touch it, each face a fan around its
-// own lowest vertex. Where a cell lists a vertex twice, faces have collapsed; the tetrahedra that would repeat it are
-// not made.
-void pull(std::span<const VertexId> cell, std::span<const CellFace> faces, std::vector<Tet>& tets) {
-    const VertexId apex = *std::min_element(cell.begin(), cell.end());
-    for (const CellFace& face : faces) {
-        const auto vertex = [&](std::size_t n) { return cell[face.corners[n % face.size]]; };
-        std::size_t lowest = 0;
-        bool touches_apex = false;
-        for (std::size_t n = 0; n < face.size; ++n) {
-            touches_apex = touches_apex || vertex(n) == apex;
-            if (vertex(n) < vertex(lowest)) lowest = n;
-        }
-        if (touches_apex) continue;
-        for (std::size_t n = 1; n + 1 < face.size; ++n) {
-            const Tet tet{apex, vertex(lowest), vertex(lowest + n), vertex(lowest + n + 1)};
-            if (!has_repeated_vertex(tet)) tets.push_back(tet);
-        }
-    }
+[[noreturn]] void throw_bad_cell(const Dataset& dataset, std::size_t cell, std::string expected, std::string found) {
+    throw Error({.kind = ErrorKind::data,
+                 .place = dataset.source + ", cell " + std::to_string(cell),
+                 .expected = std::move(expected),
+                 .found = std::move(found),
+                 .advice = "the data are damaged: write them again"});
 }
 
-void split_cell(CellKind kind, std::span<const VertexId> cell, std::vector<Tet>& tets) {
-    switch (kind) {
-        case CellKind::tetrahedron:
-            assert(cell.size() == 4);
-            tets.push_back({cell[0], cell[1], cell[2], cell[3]});
-            break;
-        case CellKind::hexahedron:
-            assert(cell.size() == 8);
-            pull(cell, hexahedron_faces, tets);
-            break;
-    }
+// Whether a face stream ends where its counts say.
+bool is_face_stream(std::span<const VertexId> stream) {
+    if (stream.empty()) return false;
+    std::size_t faces = 0;
+    std::size_t at = 1;
+    for (; at < stream.size() && stream[at] < stream.size() - at; at += 1 + stream[at])
+        ++faces;
+    return at == stream.size() && faces == stream[0];
 }
 
-// `first_tets` gets, per cell, the index of its first tetrahedron, and one more entry for the end.
-void split_cells(const CellList& cells, std::vector<Tet>& tets, std::vector<CellId>& first_tets) {
-    assert(cells.offsets.size() == cells.size() + 1);
-    const std::span<const VertexId> vertices(cells.vertices);
+// Throws Error (data) for a cell whose list does not fit its kind or that has a vertex that is none of the points or is
+// not finite: the split follows them all.
+void require_sound_cells(const Dataset& dataset) {
+    const CellList& cells = dataset.cells;
+    const auto is_sound = [&](VertexId v) {
+        if (v >= dataset.points.size()) return false;
+        const glm::dvec3& p = dataset.points[v];
+        return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+    };
+    const auto require_sound = [&](std::size_t c, std::span<const VertexId> vertices) {
+        const auto bad = std::find_if_not(vertices.begin(), vertices.end(), is_sound);
+        if (bad == vertices.end()) return;
+        throw_bad_cell(dataset, c, "vertices among the " + std::to_string(dataset.points.size()) + " finite points",
+                       "the vertex " + std::to_string(*bad));
+    };
     for (std::size_t c = 0; c < cells.size(); ++c) {
-        first_tets.push_back(static_cast<CellId>(tets.size()));
-        split_cell(cells.kinds[c], vertices.subspan(cells.offsets[c], cells.offsets[c + 1] - cells.offsets[c]), tets);
+        const std::span<const VertexId> cell = list_of(cells, c);
+        const bool fits =
+            cells.kinds[c] == CellKind::polyhedron ? is_face_stream(cell) : cell.size() == vertex_count(cells.kinds[c]);
+        if (!fits) throw_bad_cell(dataset, c, "a list that fits its kind", std::to_string(cell.size()) + " entries");
+        if (cells.kinds[c] == CellKind::polyhedron) {
+            for_each_face(cells.kinds[c], cell, [&](std::span<const VertexId> face) { require_sound(c, face); });
+        } else {
+            require_sound(c, cell);
+        }
     }
-    first_tets.push_back(static_cast<CellId>(tets.size()));
+}
+
+// Appends to the point fields of `mesh` their weighted means over the centre's vertices.
+void add_point(const CellCentre& centre, TetMesh& mesh) {
+    mesh.points.push_back(centre.position);
+    for (Field& field : mesh.point_fields) {
+        const auto components = static_cast<std::size_t>(field.components);
+        for (std::size_t k = 0; k < components; ++k) {
+            double mean = 0.0;
+            for (std::size_t n = 0; n < centre.vertices.size(); ++n)
+                mean += centre.weights[n] * field.values[centre.vertices[n] * components + k];
+            field.values.push_back(mean);
+        }
+    }
+}
+
+// Returns, per cell, the index of its first tetrahedron, and one more entry for the end.
+std::vector<CellId> split_cells(const Dataset& dataset, TetMesh& mesh, TetrahedralizeReport& report) {
+    const CellList& cells = dataset.cells;
+    CellSplitter splitter(dataset.points);
+    std::vector<CellId> first_tets;
+    first_tets.reserve(cells.size() + 1);
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        first_tets.push_back(static_cast<CellId>(mesh.tets.size()));
+        const auto next_point = static_cast<VertexId>(mesh.points.size());
+        if (const CellCentre* centre = splitter.split(cells.kinds[c], list_of(cells, c), next_point, mesh.tets)) {
+            add_point(*centre, mesh);
+            ++report.added_points;
+            if (cells.kinds[c] != CellKind::polyhedron) ++report.centred_cells;
+        }
+        require_addressable(mesh.tets.size(), "tetrahedra", dataset.source);
+        require_addressable(mesh.points.size(), "points, the centres of cells included,", dataset.source);
+    }
+    first_tets.push_back(static_cast<CellId>(mesh.tets.size()));
+    return first_tets;
+}
+
+// What the split needs, to reserve it: exact without collapsed cells and centres in cells that are no polyhedra.
+std::size_t expected_tets(const CellList& cells) {
+    std::size_t tets = 0;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        const std::span<const VertexId> cell = list_of(cells, c);
+        switch (cells.kinds[c]) {
+            case CellKind::tetrahedron:
+                tets += 1;
+                break;
+            case CellKind::pyramid:
+                tets += 2;
+                break;
+            case CellKind::polyhedron:  // a count and, on each face, two vertices more than triangles
+                tets += std::max(cell.size() - 1, 3 * std::size_t{cell[0]}) - 3 * std::size_t{cell[0]};
+                break;
+            default:
+                tets += 3 * (cell.size() / 2 - 2);  // prisms
+        }
+    }
+    return tets;
 }
 
 // ---- Around the splits ----
 
-// Exact for cells without repeated vertices, an upper bound otherwise.
-std::size_t tet_count(const Dataset& dataset) {
-    if (dataset.grid) return tets_per_grid_cell * dataset.grid->cells();
-    const auto& kinds = dataset.cells.kinds;
-    const auto hexahedra = static_cast<std::size_t>(std::count(kinds.begin(), kinds.end(), CellKind::hexahedron));
-    return kinds.size() + 5 * hexahedra;
-}
-
-void require_addressable(std::size_t count, const char* what, const std::string& place) {
-    if (count <= max_elements) return;
-    throw Error({.kind = ErrorKind::data,
-                 .place = place,
-                 .expected = "at most " + std::to_string(max_elements) + " " + what + " (ids have 32 bits)",
-                 .found = std::to_string(count),
-                 .advice = "cut the data into parts"});
-}
-
-void require_rows(const Field& field, std::size_t rows, const std::string& place) {
-    const std::size_t values = rows * static_cast<std::size_t>(field.components);
+void require_rows(const Field& field, std::size_t rows, const char* what, const std::string& place) {
+    const std::size_t values = rows * static_cast<std::size_t>(std::max(field.components, 0));
     if (field.components >= 1 && field.values.size() == values) return;
     throw Error({.kind = ErrorKind::data,
-                 .place = place + ", cell field \"" + field.name + "\"",
-                 .expected = std::to_string(values) + " values (" + std::to_string(rows) + " cells by " +
+                 .place = place + ", field \"" + field.name + "\"",
+                 .expected = std::to_string(values) + " values (" + std::to_string(rows) + " " + what + " by " +
                              std::to_string(field.components) + " components)",
                  .found = std::to_string(field.values.size()),
-                 .advice = "give every cell one row"});
+                 .advice = "give every element one row"});
 }
 
 // The rows of a field on cells, repeated on each cell's tetrahedra, `tets` in all. `tets_of(c)`: how many cell c has.
@@ -149,36 +194,61 @@ Field repeat_rows(const Field& field, std::size_t cells, std::size_t tets, TetsO
     return result;
 }
 
+// Makes the tetrahedra of one cell, [begin, end), positive, and counts those that had to be turned and those that
+// contradict the cell's volume. Flat ones turn with their cell, so that the faces between the cell's tetrahedra stay
+// between them.
+void orient_cell(TetMesh& mesh, std::size_t begin, std::size_t end, TetrahedralizeReport& report) {
+    double volume = 0.0;
+    for (std::size_t i = begin; i < end; ++i)
+        volume += signed_volume(mesh, static_cast<CellId>(i));
+    const int cell_sign = volume < 0.0 ? -1 : 1;
+    for (std::size_t i = begin; i < end; ++i) {
+        Tet& t = mesh.tets[i];
+        const int sign = orientation(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
+        if (sign == 0) ++report.flat;
+        if (sign < 0) ++report.flipped;
+        if (sign == -cell_sign) ++report.inverted;
+        if (sign < 0 || (sign == 0 && cell_sign < 0)) std::swap(t[2], t[3]);
+    }
+}
+
 }  // namespace
 
 TetMesh tetrahedralize(const Dataset& dataset, TetrahedralizeReport* report) {
     assert(!dataset.grid || dataset.points.size() == dataset.grid->ni * dataset.grid->nj * dataset.grid->nk);
+    assert(dataset.grid || dataset.cells.offsets.size() == dataset.cells.size() + 1);
+    require_sound_cells(dataset);
     const std::size_t cells = dataset.cell_count();
-    const std::size_t tets = tet_count(dataset);
+    const std::size_t tets = dataset.grid ? tets_per_grid_cell * cells : expected_tets(dataset.cells);
     require_addressable(dataset.points.size(), "points", dataset.source);
     require_addressable(tets, "tetrahedra", dataset.source);
+    for (const Field& field : dataset.point_fields)
+        require_rows(field, dataset.points.size(), "points", dataset.source);
     for (const Field& field : dataset.cell_fields)
-        require_rows(field, cells, dataset.source);
+        require_rows(field, cells, "cells", dataset.source);
 
     TetMesh mesh{dataset.points, {}, dataset.point_fields, {}};
     mesh.tets.reserve(tets);
+    TetrahedralizeReport counts;
     std::vector<CellId> first_tets;
     if (dataset.grid) {
         split_grid(*dataset.grid, mesh.tets);
     } else {
-        first_tets.reserve(cells + 1);
-        split_cells(dataset.cells, mesh.tets, first_tets);
+        first_tets = split_cells(dataset, mesh, counts);
     }
-    const auto tets_of = [&](std::size_t c) -> std::size_t {
-        return dataset.grid ? tets_per_grid_cell : first_tets[c + 1] - first_tets[c];
+    const auto first_tet = [&](std::size_t c) -> std::size_t {
+        return dataset.grid ? tets_per_grid_cell * c : first_tets[c];
     };
     for (const Field& field : dataset.cell_fields) {
-        mesh.cell_fields.push_back(repeat_rows(field, cells, mesh.tets.size(), tets_of));
+        mesh.cell_fields.push_back(repeat_rows(field, cells, mesh.tets.size(),
+                                               [&](std::size_t c) { return first_tet(c + 1) - first_tet(c); }));
     }
 
-    validate(mesh, dataset.source);  // ids in range, before orient_cells follows them
-    const OrientationCounts counts = orient_cells(mesh);
-    if (report) *report = {mesh.tets.size(), counts.flipped, counts.flat};
+    validate(mesh, dataset.source);  // all points finite, before the signs are asked for
+    for (std::size_t c = 0; c < cells; ++c)
+        orient_cell(mesh, first_tet(c), first_tet(c + 1), counts);
+    counts.tets = mesh.tets.size();
+    if (report) *report = counts;
     return mesh;
 }
 

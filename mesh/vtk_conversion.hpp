@@ -5,15 +5,18 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "mesh/dataset.hpp"
+#include "mesh/file_bytes.hpp"
 
 class vtkAlgorithm;
 class vtkDataArray;
 class vtkPoints;
+class vtkUnstructuredGrid;
 
 namespace cellproj {
 
@@ -22,15 +25,8 @@ namespace cellproj {
 // terminal. Not reentrant; other threads wait, as VTK has one place for messages only (theirs are caught, too, while a
 // file is read).
 void update(vtkAlgorithm& reader, const std::filesystem::path& file);
-
-// Throws Error (file) unless `file` can be opened and is a regular file, Error (format) when it is empty.
-void require_readable(const std::filesystem::path& file);
-
-// With dots for control characters and bytes beyond ASCII: fit for messages.
-std::string printable(std::string text);
-
-// At most `count` bytes of a file from `offset` on; fewer where it ends.
-std::string read_bytes(const std::filesystem::path& file, std::uint64_t offset, std::size_t count);
+// The same for any work with VTK's readers.
+void capture_errors(const std::filesystem::path& file, const std::function<void()>& work);
 
 // Throws Error (data) when there are more points than ids or one is not finite.
 std::vector<glm::dvec3> to_points(vtkPoints& points, const std::filesystem::path& file);
@@ -39,6 +35,12 @@ std::vector<glm::dvec3> to_points(vtkPoints& points, const std::filesystem::path
 Field to_field(vtkDataArray& array, const std::string& name, std::span<const std::uint64_t> rows);
 // All of them.
 Field to_field(vtkDataArray& array, const std::string& name);
+
+// vtk_grid.cpp: the volume cells and the fields of a grid; `place` names it in messages, `format` is told in words. All
+// linear kinds are taken; quadratic, Lagrange and Bézier cells by their corners only, so curved edges become straight.
+// Cells marked as duplicate or hidden in vtkGhostType, or with a point marked as hidden, are left out and counted. Throws
+// Error (format) for cells that do not fit their lists, Error (data) for other kinds and for point ids out of range.
+Dataset to_dataset(vtkUnstructuredGrid& grid, const std::filesystem::path& place, const std::string& format);
 
 // legacy_cells.cpp: VTK's legacy reader follows the vertex counts of the cells without a look at how long the list is,
 // and crashes where they are wrong. Throws Error (format) for such a list.

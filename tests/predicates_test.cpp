@@ -137,5 +137,46 @@ TEST(DoubledArea, ValueIsTwiceTheArea) {
     EXPECT_DOUBLE_EQ(doubled_area({0, 0}, {0, 5}, {3, 0}), -15);
 }
 
+// Points of a grid: spheres through grid points meet many others exactly. The judge expands the determinant in integers.
+TEST(SideOfCircumsphere, AgreesWithIntegers) {
+    std::mt19937_64 random(20004);
+    std::uniform_int_distribution<std::int64_t> coordinate(-3, 3);
+    int inside = 0, on = 0, outside = 0;
+    for (int trial = 0; trial < 20000; ++trial) {
+        std::array<Integers, 5> p;
+        for (auto& q : p) q = {coordinate(random), coordinate(random), coordinate(random)};
+        if (orientation(point(p[0]), point(p[1]), point(p[2]), point(p[3])) <= 0) continue;
+        // Inside if the power of e with respect to the sphere is negative: with the centre from Cramer's rule, all integers.
+        Wide m[3][3], r[3];
+        for (std::size_t i = 0; i < 3; ++i) {
+            r[i] = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                m[i][k] = 2 * (p[i + 1][k] - p[0][k]);
+                r[i] += p[i + 1][k] * p[i + 1][k] - p[0][k] * p[0][k];
+            }
+        }
+        const auto det = [](const Wide a[3][3]) {
+            return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+                   a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+        };
+        const Wide d = det(m);
+        Wide from_a = 0, from_e = 0;  // squared distances to the centre, times d²
+        for (std::size_t k = 0; k < 3; ++k) {
+            Wide n[3][3];
+            for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t j = 0; j < 3; ++j) n[i][j] = j == k ? r[i] : m[i][j];
+            const Wide c = det(n);
+            from_a += (p[0][k] * d - c) * (p[0][k] * d - c);
+            from_e += (p[4][k] * d - c) * (p[4][k] * d - c);
+        }
+        const int expected = sign(from_a - from_e);
+        ASSERT_EQ(side_of_circumsphere(point(p[0]), point(p[1]), point(p[2]), point(p[3]), point(p[4])), expected) << trial;
+        (expected > 0 ? inside : expected < 0 ? outside : on)++;
+    }
+    EXPECT_GT(inside, 1000);
+    EXPECT_GT(outside, 1000);
+    EXPECT_GT(on, 50);
+}
+
 }  // namespace
 }  // namespace cellproj

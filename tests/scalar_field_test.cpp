@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "mesh/dataset.hpp"
 #include "mesh/error.hpp"
+#include "mesh/tetrahedralize.hpp"
 
 namespace cellproj {
 namespace {
@@ -93,6 +95,110 @@ TEST(SelectScalar, ListsWhatThereIsWhenTheNameIsUnknown) {
 TEST(SelectScalar, SaysSoWhenThereIsNoField) {
     EXPECT_EQ(error_of(one_tet(), "").kind(), ErrorKind::data);
     EXPECT_EQ(error_of(one_tet(), "p").kind(), ErrorKind::data);
+}
+
+TEST(SelectScalar, GivesOneComponentBehindAColon) {
+    TetMesh mesh = one_tet();
+    mesh.point_fields = {{"U", 3, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}}, point_scalar("a:x", 20)};
+    mesh.cell_fields = {{"T", 9, {0, 1, 2, 3, 4, 5, 6, 7, 8}}, {"a", 2, {30, 31}}};
+    const ScalarField z = select_scalar(mesh, "U:z", "");
+    EXPECT_EQ(z.name, "U:z");
+    EXPECT_EQ(z.location, FieldLocation::points);
+    EXPECT_EQ(z.values, (std::vector<double>{3, 6, 9, 12}));
+    EXPECT_EQ(select_scalar(mesh, "u:0", "").values, (std::vector<double>{1, 4, 7, 10}));
+    EXPECT_EQ(select_scalar(mesh, "U:0", "").name, "U:x");
+    EXPECT_EQ(select_scalar(mesh, "T:8", "").values, (std::vector<double>{8}));
+    EXPECT_EQ(select_scalar(mesh, "T:8", "").location, FieldLocation::cells);
+    EXPECT_EQ(select_scalar(mesh, "T:8", "").name, "T:8");
+    EXPECT_EQ(select_scalar(mesh, "a:x", "").values[0], 20.0);  // a name with a colon
+    EXPECT_EQ(select_scalar(mesh, "a:y", "").values[0], 31.0);
+    EXPECT_EQ(select_scalar(mesh, "a:x:x", "").values[0], 20.0);
+}
+
+TEST(SelectScalar, RefusesComponentsThatAreNotThere) {
+    TetMesh mesh = one_tet();
+    mesh.cell_fields = {{"U", 3, {1, 2, 3}}, {"V", 2, {1, 2}}, cell_scalar("p", 1)};
+    for (const char* name : {"U:3", "U:-1", "U:w", "U:", "U:xy", "V:z", "p:y", "U:0x"}) {
+        const Error error = error_of(mesh, name);
+        EXPECT_EQ(error.kind(), ErrorKind::option) << name;
+        EXPECT_NE(error.expected().find("a component of"), std::string::npos) << name;
+    }
+    EXPECT_NE(error_of(mesh, "W:x").expected().find("one of the fields"), std::string::npos);
+}
+
+// A regular grid of n³ points at spacing h, cut by the alternating split.
+TetMesh grid_mesh(std::size_t n, double h) {
+    Dataset dataset;
+    dataset.source = "grid";
+    for (std::size_t p = 0; p < n * n * n; ++p) {
+        dataset.points.push_back(h * glm::dvec3(p % n, p / n % n, p / (n * n)));
+    }
+    dataset.grid = GridDimensions{n, n, n};
+    return tetrahedralize(dataset);
+}
+
+double linear(const glm::dvec3& p) {
+    return 3.0 - 2.0 * p.x + 5.0 * p.y + 0.5 * p.z;
+}
+
+// The linear function at the centroid of each tetrahedron, which is its mean there.
+ScalarField linear_means(const TetMesh& mesh) {
+    ScalarField field{"s", FieldLocation::cells, {}};
+    for (const auto& t : mesh.tets) {
+        field.values.push_back(
+            linear(0.25 * (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]] + mesh.points[t[3]])));
+    }
+    return field;
+}
+
+TEST(AveragedToPoints, AConstantStaysConstant) {
+    TetMesh mesh = grid_mesh(4, 0.3);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p)
+        mesh.points[p] += 0.02 * std::sin(static_cast<double>(7 * p));
+    const ScalarField average =
+        averaged_to_points(mesh, {"c", FieldLocation::cells, std::vector<double>(mesh.tets.size(), 0.7)});
+    EXPECT_EQ(average.location, FieldLocation::points);
+    EXPECT_EQ(average.name, "c");
+    ASSERT_EQ(average.values.size(), mesh.points.size());
+    // Sums of at most 32 products, each rounded twice.
+    for (const double value : average.values)
+        EXPECT_NEAR(value, 0.7, 64 * 1.2e-16);
+}
+
+TEST(AveragedToPoints, ReproducesALinearFieldWithinItsBounds) {
+    const std::size_t n = 5;
+    const double h = 0.25;
+    const TetMesh mesh = grid_mesh(n, h);
+    const ScalarField average = averaged_to_points(mesh, linear_means(mesh));
+    const double gradient = std::sqrt(4.0 + 25.0 + 0.25);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        const auto inner = [&](std::size_t i) { return i > 0 && i + 1 < n; };
+        const double error = std::abs(average.values[p] - linear(mesh.points[p]));
+        // The alternating split is symmetric around inner points; elsewhere a mean lies in a cell around the point.
+        if (inner(p % n) && inner(p / n % n) && inner(p / (n * n))) {
+            EXPECT_LT(error, 1e-13);
+        } else {
+            EXPECT_LT(error, gradient * h * std::sqrt(3.0));
+        }
+    }
+}
+
+TEST(AveragedToPoints, WeighsByVolume) {
+    // Two tetrahedra on the face 0 1 2, of heights 3 and 1; a flat one at the corners 3, 5, 6, 7; the point 8 is alone.
+    const TetMesh mesh{
+        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 3}, {0, 0, -1}, {1, 0, 3}, {0, 1, 3}, {1, 1, 3}, {9, 9, 9}},
+        {{0, 1, 2, 3}, {0, 2, 1, 4}, {3, 5, 6, 7}},
+        {},
+        {}};
+    const std::vector<double> values = averaged_to_points(mesh, {"c", FieldLocation::cells, {10, 30, 50}}).values;
+    for (const std::size_t shared : {0U, 1U, 2U})
+        EXPECT_DOUBLE_EQ(values[shared], 15.0);
+    EXPECT_DOUBLE_EQ(values[3], 10.0);
+    EXPECT_DOUBLE_EQ(values[4], 30.0);
+    EXPECT_DOUBLE_EQ(values[5], 50.0);
+    EXPECT_TRUE(std::isnan(values[8]));
+    const ScalarField on_points{"p", FieldLocation::points, {1, 2, 3}};
+    EXPECT_EQ(averaged_to_points(mesh, on_points).values, on_points.values);
 }
 
 TEST(ScalarField, AtLooksUpTheVertexOrTheCell) {

@@ -298,6 +298,11 @@ TEST(TetrahedralizeErrors, UnusableDatasetsAreRefused) {
     Dataset short_point_field = single_cell(CellKind::hexahedron, cube, {0, 1, 2, 3, 4, 5, 6, 7});
     short_point_field.point_fields = {{"s", 1, {1, 2}}};
     EXPECT_EQ(kind_of_error(short_point_field), ErrorKind::data);
+    EXPECT_EQ(kind_of_error(single_cell(CellKind::wedge, cube, {0, 1, 2, 3, 4})), ErrorKind::data);
+    const std::vector<std::vector<VertexId>> broken_streams{
+        {}, {4, 3, 0, 1, 2}, {1, 3, 0, 1}, {1, 2, 0, 1, 2}, {1, 0xffffffffU, 0}, {1, 3, 0, 1, 8}};
+    for (const auto& stream : broken_streams)
+        EXPECT_EQ(kind_of_error(single_cell(CellKind::polyhedron, cube, stream)), ErrorKind::data);
 }
 
 }  // namespace

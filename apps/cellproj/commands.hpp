@@ -9,7 +9,9 @@ class App;
 
 namespace cellproj::cli {
 
+void add_check_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_info_command(CLI::App& app);
+void add_tetrahedralize_command(CLI::App& app);
 
 }  // namespace cellproj::cli

@@ -25,6 +25,20 @@ void print_fields(const TetMesh& mesh, FieldLocation location) {
     }
 }
 
+void print_blocks(const Input& input) {
+    if (input.blocks.empty()) return;
+    std::printf("blocks      %zu of volumes", input.blocks.size());
+    if (input.skipped_blocks > 0) std::printf(" (%zu more hold none and are skipped)", input.skipped_blocks);
+    std::printf("\n");
+    for (const std::string& name : input.blocks) std::printf("  %s\n", name.c_str());
+}
+
+void print_times(const Input& input) {
+    if (!input.time) return;
+    std::printf("time        %.6g (of %zu steps, %.6g .. %.6g)\n", *input.time, input.times.size(), input.times.front(),
+                input.times.back());
+}
+
 void print_info(const InputOptions& options) {
     const Input input = load(options);
     const TetMesh& mesh = *input.mesh;
@@ -36,6 +50,8 @@ void print_info(const InputOptions& options) {
     if (input.skipped_cells > 0) std::printf(" (%zu more are no volumes and are skipped)", input.skipped_cells);
     std::printf("\ntetrahedra  %zu (%zu of zero volume, %zu turned to positive volume)\n", input.report.tets,
                 input.report.flat, input.report.flipped);
+    print_blocks(input);
+    print_times(input);
     for (int axis = 0; axis < 3; ++axis) {
         std::printf("%s%c %.6g .. %.6g%s", axis == 0 ? "bounds      " : ", ", "xyz"[axis], box.low[axis], box.high[axis],
                     axis == 2 ? "\n" : "");
@@ -54,8 +70,7 @@ void print_info(const InputOptions& options) {
 void add_info_command(CLI::App& app) {
     auto options = std::make_shared<InputOptions>();
     CLI::App* command = app.add_subcommand("info", "Say what is in a file: cells, fields with ranges, bounds.");
-    command->add_option("FILE", options->file, "A .vtu, .vtk or PLOT3D grid file, or demo:sphere")->required();
-    command->add_option("--q", options->solution, "PLOT3D: the solution file that belongs to the grid");
+    add_input_options(*command, *options);
     command->callback([options] { print_info(*options); });
 }
 

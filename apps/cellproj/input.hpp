@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "classify/transfer_function.hpp"
 #include "mesh/dataset.hpp"
@@ -14,12 +15,21 @@
 #include "mesh/tetrahedralize.hpp"
 #include "project/camera.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace cellproj::cli {
 
 struct InputOptions {
     std::string file;                // a path, or "demo:sphere"
     std::filesystem::path solution;  // PLOT3D: --q
+    std::vector<std::string> blocks; // --block, empty: all
+    std::optional<double> time;      // --time, none: the last
 };
+
+// FILE, --q, --block and --time, into `options`, which must live as long as the command.
+void add_input_options(CLI::App& command, InputOptions& options);
 
 struct Input {
     std::string name;                       // for messages
@@ -28,7 +38,10 @@ struct Input {
     std::string cells;                      // in words: "37479 hexahedra"
     std::string format;                     // in words
     std::optional<GridDimensions> grid;
-    std::size_t skipped_cells = 0;
+    std::size_t skipped_cells = 0, skipped_blocks = 0;
+    std::vector<std::string> blocks;        // names of the volume blocks; empty: one dataset
+    std::vector<double> times;              // of the file's time steps; empty: none
+    std::optional<double> time;             // the one that was read
     double read_ms = 0, tetrahedralize_ms = 0;
     // What an embedded scene brings with it.
     std::optional<Camera> camera;

@@ -14,9 +14,11 @@ constexpr const char* description =
     "\n"
     "Examples:\n"
     "  cellproj info flow.vtu\n"
+    "  cellproj check flow.vtu\n"
     "  cellproj render flow.vtu -o flow.png\n"
     "  cellproj render flow.vtu -o flow.png --field p --transfer tf.json --size 1024x768\n"
     "  cellproj render grid.xyz --q solution.q -o mach.png --field Mach --from -1,-2,1\n"
+    "  cellproj tetrahedralize part.stl -o part.vtu\n"
     "  cellproj render demo:sphere -o orbit.png --orbit 360 --frames 24 --stats stats.json\n";
 
 }  // namespace
@@ -27,8 +29,12 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     cellproj::cli::add_render_command(app);
     cellproj::cli::add_info_command(app);
+    cellproj::cli::add_check_command(app);
+    cellproj::cli::add_tetrahedralize_command(app);
     try {
         app.parse(argc, argv);
+    } catch (const CLI::RuntimeError& outcome) {  // a command's own exit code, its words are said
+        return outcome.get_exit_code();
     } catch (const CLI::ParseError& error) {
         const bool asked_for_help = error.get_exit_code() == 0;
         if (asked_for_help) return app.exit(error);

@@ -207,10 +207,9 @@ void render_pictures(const RenderOptions& options) {
 void add_render_command(CLI::App& app) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a mesh to a picture.");
-    command->add_option("FILE", options->input.file, "A .vtu, .vtk or PLOT3D grid file, or demo:sphere")->required();
+    add_input_options(*command, options->input);
     command->add_option("-o,--output", options->output, "The picture: .png or .exr; several become NAME_000.png …")
         ->required();
-    command->add_option("--q", options->input.solution, "PLOT3D: the solution file that belongs to the grid");
     command->add_option("--field", options->field, "The field to draw (default: the first); vectors by magnitude");
     command->add_option("--transfer", options->transfer, "Transfer function (JSON); default: viridis over the 1-99 % range");
     CLI::Option* camera = command->add_option("--camera", options->camera, "Camera or array of cameras (JSON)");

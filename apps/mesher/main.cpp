@@ -25,7 +25,9 @@
 #define TETLIBRARY
 #include <tetgen.h>
 
+#include "mesh/error.hpp"
 #include "mesh/mesher_format.hpp"
+#include "repair.hpp"
 
 namespace {
 
@@ -154,17 +156,18 @@ std::string switch_with_number(char name, double number) {
     return text.data();
 }
 
-// p: a piecewise-linear complex; Q: quiet; A: region attributes; a: volume bounds of regions; aV: of all; qR:
-// radius-edge ratio; O0: no optimization of the finished mesh, whose flips break bounds that refinement kept (one cell
-// in a few thousand came out up to 15 % too large). "a" without a number must not stand before a digit.
-std::string tetgen_switches(const MeshingRequest& request) {
+// p: a piecewise-linear complex; Q: quiet; A: regions are numbered or keep their attributes; a: volume bounds of
+// regions; aV: of all; qR: radius-edge ratio; O0: no optimization of the finished mesh, whose flips break bounds that
+// refinement kept (one cell in a few thousand came out up to 15 % too large). "a" without a number must not stand
+// before a digit.
+std::string tetgen_switches(const MeshingRequest& request, bool number_regions) {
     const auto bounded = [](const Region& region) { return region.max_volume > 0.0; };
     const std::vector<Region>& regions = request.complex.regions;
     const bool region_bounds = std::any_of(regions.begin(), regions.end(), bounded);
     std::string switches = "p";
     if (region_bounds) switches += 'a';
     switches += 'Q';
-    if (!regions.empty()) switches += 'A';
+    if (!regions.empty() || number_regions) switches += 'A';
     if (request.radius_edge_ratio > 0.0) switches += switch_with_number('q', request.radius_edge_ratio);
     if (request.max_volume > 0.0) switches += switch_with_number('a', request.max_volume);
     if (region_bounds || request.radius_edge_ratio > 0.0 || request.max_volume > 0.0) switches += "O0";
@@ -190,10 +193,10 @@ TetMesh to_mesh(const tetgenio& io) {
     return mesh;
 }
 
-TetMesh mesh_with_tetgen(const MeshingRequest& request) {
+TetMesh mesh_with_tetgen(const MeshingRequest& request, bool number_regions = false) {
     tetgenio in, out;
     set_complex(in, request.complex);
-    std::string switches = tetgen_switches(request);
+    std::string switches = tetgen_switches(request, number_regions);
     tetrahedralize(switches.data(), &in, &out);
     return to_mesh(out);
 }
@@ -201,6 +204,31 @@ TetMesh mesh_with_tetgen(const MeshingRequest& request) {
 void require_bound(const char* name, double bound) {
     if (!std::isfinite(bound) || bound < 0.0)
         throw std::invalid_argument(std::string(name) + " must be finite and ≥ 0");
+}
+
+// A crash while the surface is repaired ends as TetGen's do; only what is wrong with the surface is an answer.
+std::string answer_surface(const std::string& message, const std::string& place) {
+    const SurfaceRequest request = decode_surface_request(message, place);
+    require_bound("max_volume", request.max_volume);
+    require_bound("radius_edge_ratio", request.radius_edge_ratio);
+    MeshingRequest meshing{{}, request.max_volume, request.radius_edge_ratio};
+    try {
+        validate(request.surface);
+        meshing.complex = closed_boundary(request.surface, request.fill_holes);
+    } catch (const Error& error) {
+        return encode_refusal(error);
+    }
+    TetMesh mesh = mesh_with_tetgen(meshing, true);
+    keep_inside(mesh, meshing.complex);
+    return encode_answer(mesh);
+}
+
+std::string answer_complex(const std::string& message, const std::string& place) {
+    const MeshingRequest request = decode_request(message, place);
+    validate(request.complex, place);
+    require_bound("max_volume", request.max_volume);
+    require_bound("radius_edge_ratio", request.radius_edge_ratio);
+    return encode_answer(mesh_with_tetgen(request));
 }
 
 }  // namespace
@@ -217,10 +245,8 @@ int main(int argc, char** argv) {
 #endif
     std::set_terminate(report_and_exit);
     const int answer = take_standard_output();
-    const MeshingRequest request = decode_request(read_all(STDIN_FILENO), "request on standard input");
-    validate(request.complex, "request on standard input");
-    require_bound("max_volume", request.max_volume);
-    require_bound("radius_edge_ratio", request.radius_edge_ratio);
-    write_all(answer, encode_answer(mesh_with_tetgen(request)));
+    const std::string request = read_all(STDIN_FILENO);
+    const std::string place = "request on standard input";
+    write_all(answer, is_surface_request(request) ? answer_surface(request, place) : answer_complex(request, place));
     return 0;
 }

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Results of solvers in several files or blocks: OpenFOAM, EnSight Gold, Exodus II and CGNS.
+#include <vtkCGNSReader.h>
+#include <vtkDummyController.h>
+#include <vtkExodusIIReader.h>
+#include <vtkGenericEnSightReader.h>
+#include <vtkNew.h>
+#include <vtkPOpenFOAMReader.h>
+
+#include <stdexcept>
+
+#include "mesh/error.hpp"
+#include "mesh/vtk_conversion.hpp"
+#include "mesh/vtk_readers.hpp"
+
+namespace cellproj {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// ---- OpenFOAM ----
+
+// The folder of a case, given by itself, by its system/controlDict or by a file .foam in it.
+fs::path case_folder(const fs::path& file) {
+    if (fs::is_directory(file)) return file;
+    const fs::path folder = fs::absolute(file).parent_path();
+    return file.filename() == "controlDict" ? folder.parent_path() : folder;
+}
+
+// A name in the case's folder from which VTK's reader finds everything; it need not exist.
+fs::path name_in_case(const fs::path& folder) {
+    return folder / "case.foam";
+}
+
+bool is_decomposed(const fs::path& folder) {
+    return !fs::exists(folder / "constant" / "polyMesh") && fs::is_directory(folder / "processor0");
+}
+
+// Binary files say how wide their numbers are: arch "LSB;label=32;scalar=64".
+struct NumberWidths {
+    bool long_labels = false;
+    bool double_scalars = true;
+};
+
+NumberWidths number_widths(const fs::path& mesh) {
+    constexpr std::size_t header = 2048;
+    const std::string head = read_bytes(mesh / "owner", 0, header) + read_bytes(mesh / "points", 0, header);
+    return {head.find("label=64") != std::string::npos, head.find("scalar=32") == std::string::npos};
+}
+
+void require_case(const fs::path& folder, const fs::path& file) {
+    for (const fs::path& needed :
+         {folder / "system" / "controlDict", (is_decomposed(folder) ? folder / "processor0" : folder) / "constant"}) {
+        if (fs::exists(needed)) continue;
+        throw Error({.kind = ErrorKind::file,
+                     .place = file.string(),
+                     .expected = "an OpenFOAM case in the folder " + folder.string(),
+                     .found = "no " + needed.lexically_relative(folder).string() + " in it",
+                     .advice = "put the .foam file into the case's folder, or name that folder"});
+    }
+}
+
+// The internal meshes of all regions, no boundary patches.
+void select_volumes(vtkOpenFOAMReader& reader) {
+    for (int p = 0; p < reader.GetNumberOfPatchArrays(); ++p) {
+        const std::string name = reader.GetPatchArrayName(p);
+        reader.SetPatchArrayStatus(name.c_str(), name.ends_with("internalMesh"));
+    }
+    reader.EnableAllCellArrays();
+    reader.EnableAllPointArrays();
+}
+
+}  // namespace
+
+Dataset read_openfoam(const fs::path& file, const ReadOptions& options) {
+    const fs::path folder = case_folder(file);
+    require_case(folder, file);
+    const bool decomposed = is_decomposed(folder);
+    const NumberWidths widths = number_widths((decomposed ? folder / "processor0" : folder) / "constant" / "polyMesh");
+    const fs::path name = name_in_case(folder);
+    vtkNew<vtkDummyController> one_process;  // a decomposed case is read by asking it, unchecked
+    vtkNew<vtkPOpenFOAMReader> reader;
+    reader->SetController(one_process);
+    reader->SetFileName(name.c_str());
+    reader->SetCaseType(decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
+    reader->SetUse64BitLabels(widths.long_labels);
+    reader->SetUse64BitFloats(widths.double_scalars);
+    reader->CreateCellToPointOff();  // values as the solver wrote them
+    reader->DecomposePolyhedraOff();
+    reader->SkipZeroTimeOff();
+    capture_errors(file, [&] {
+        reader->UpdateInformation();
+        select_volumes(*reader);
+    });
+    return read_blocks(*reader, file, decomposed ? "OpenFOAM case, decomposed" : "OpenFOAM case", options);
+}
+
+// ---- EnSight Gold ----
+
+Dataset read_ensight(const fs::path& file, const ReadOptions& options) {
+    const fs::path folder = fs::absolute(file).parent_path();
+    vtkNew<vtkGenericEnSightReader> reader;
+    reader->SetFilePath((folder.string() + "/").c_str());
+    reader->SetCaseFileName(file.filename().c_str());
+    reader->ReadAllVariablesOn();
+    return read_blocks(*reader, file, "EnSight Gold", options);
+}
+
+// ---- Exodus II ----
+
+Dataset read_exodus(const fs::path& file, const ReadOptions& options) {
+    vtkNew<vtkExodusIIReader> reader;
+    reader->SetFileName(file.c_str());
+    capture_errors(file, [&] {
+        if (reader->CanReadFile(file.c_str()) == 0) {
+            throw std::runtime_error("no Exodus II file that can be opened");
+        }
+        reader->UpdateInformation();
+        for (const int kind : {vtkExodusIIReader::NODAL, vtkExodusIIReader::ELEM_BLOCK}) {
+            reader->SetAllArrayStatus(kind, 1);
+        }
+    });
+    reader->ApplyDisplacementsOff();
+    reader->GenerateObjectIdCellArrayOff();
+    return read_blocks(*reader, file, "Exodus II", options);
+}
+
+// ---- CGNS ----
+
+Dataset read_cgns(const fs::path& file, const ReadOptions& options) {
+    vtkNew<vtkCGNSReader> reader;
+    reader->SetFileName(file.c_str());
+    capture_errors(file, [&] {
+        reader->UpdateInformation();
+        reader->EnableAllBases();
+        reader->EnableAllFamilies();
+        reader->EnableAllPointArrays();
+        reader->EnableAllCellArrays();
+    });
+    return read_blocks(*reader, file, "CGNS", options);
+}
+
+}  // namespace cellproj

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Files to datasets without VTK: the formats of TetGen, Gmsh, Medit and SU2, by small readers of our own.
+//
+// All of them: points float64, as many and in the order as in the file; volume cells by kind, second-order ones by
+// their corners; points, lines and surfaces among the elements are skipped and counted. Ids become 0-based. A count
+// announced in the file is compared with the size of the file before memory is taken for it. Sizes: #P points, #C
+// volume cells. Throw Error, naming file and line (or byte):
+// - file: missing, a folder, unreadable;
+// - format: truncated, malformed, an unknown version, element type or keyword where one is needed;
+// - data: no points, no volume cells, a two-dimensional mesh, points that are not finite, ids out of range or missing.
+#pragma once
+
+#include <filesystem>
+
+#include "mesh/dataset.hpp"
+
+namespace cellproj {
+
+// Gmsh MSH 2 and 4.1, ascii and binary (of the byte order of this machine). Node tags may have gaps. Cell fields:
+// "entity", the tag of the model entity of a cell, and "physical", the first physical group of that entity (0 for none;
+// left out when no cell has one, and for the entities of partitioned 4.1 files). Views ($NodeData, $ElementData) become
+// fields of 1, 3 or 9 components under their own names, with " step N" behind the name for every time step but number
+// 0, and NaN where a view has no value. $ElementNodeData is skipped.
+Dataset read_gmsh(const std::filesystem::path& file);
+
+// Medit .mesh, ascii, dimension 3. Cell field "region" from the references of the cells. When a file of the same stem
+// with the suffix .sol lies beside it, its solutions at vertices become the point fields "solution" or, if there are
+// several, "solution_1", "solution_2", …, with 1 (scalar), 3 (vector), 6
+// (symmetric tensor) or 9 (tensor) components. The file must end with the keyword End.
+Dataset read_medit(const std::filesystem::path& file);
+
+// SU2 native meshes, NDIME= 3. They have neither fields nor regions, nor has the result.
+Dataset read_su2(const std::filesystem::path& file);
+
+// TetGen, given the .node or the .ele file; the other one of the same stem must lie beside it. Tetrahedra with 4 or 10
+// nodes; ids start at 0 or 1, as in the first line of the .node file. Point fields "attribute_1", … and, if marked,
+// "boundary_marker"; cell field "region" from one attribute of the cells, "region_1", … from several.
+Dataset read_tetgen(const std::filesystem::path& file);
+
+}  // namespace cellproj

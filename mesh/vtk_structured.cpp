@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkStructuredGrid.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "mesh/error.hpp"
+#include "mesh/merge_blocks.hpp"
+#include "mesh/vtk_conversion.hpp"
+#include "mesh/vtk_readers.hpp"
+
+namespace cellproj {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::array<int, 3> dimensions_of(vtkDataSet& grid) {
+    std::array<int, 3> n{};
+    if (auto* curvilinear = vtkStructuredGrid::SafeDownCast(&grid)) curvilinear->GetDimensions(n.data());
+    if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(&grid)) rectilinear->GetDimensions(n.data());
+    if (auto* image = vtkImageData::SafeDownCast(&grid)) image->GetDimensions(n.data());
+    return n;
+}
+
+std::string to_words(const std::array<int, 3>& n) {
+    return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]) + " points";
+}
+
+[[noreturn]] void fail(ErrorKind kind, const fs::path& file, const std::string& expected, const std::string& found,
+                       const std::string& advice) {
+    throw Error({.kind = kind, .place = file.string(), .expected = expected, .found = found, .advice = advice});
+}
+
+// The grid's dimensions, once its arrays are known to fill them.
+GridDimensions require_volume(vtkDataSet& grid, const fs::path& file) {
+    const std::array<int, 3> n = dimensions_of(grid);
+    if (*std::min_element(n.begin(), n.end()) < 1) {
+        fail(ErrorKind::format, file, "a grid of points", to_words(n), "the file is damaged: write it again");
+    }
+    const GridDimensions dims{static_cast<std::size_t>(n[0]), static_cast<std::size_t>(n[1]),
+                              static_cast<std::size_t>(n[2])};
+    if (*std::min_element(n.begin(), n.end()) < 2) {
+        fail(ErrorKind::data, file, "at least 2 points in each direction", to_words(n),
+             "a point, a line or a surface has no volume to draw");
+    }
+    constexpr std::size_t most = std::numeric_limits<VertexId>::max();
+    if (dims.ni * dims.nj > most || dims.ni * dims.nj * dims.nk > max_elements) {
+        fail(ErrorKind::data, file, "at most " + std::to_string(max_elements) + " points (ids have 32 bits)",
+             to_words(n), "cut the grid into parts");
+    }
+    auto* curvilinear = vtkStructuredGrid::SafeDownCast(&grid);
+    const auto* rectilinear = vtkRectilinearGrid::SafeDownCast(&grid);
+    vtkIdType points = grid.GetNumberOfPoints();
+    if (curvilinear) points = curvilinear->GetPoints() ? curvilinear->GetPoints()->GetNumberOfPoints() : 0;
+    if (points != static_cast<vtkIdType>(dims.ni * dims.nj * dims.nk)) {
+        fail(ErrorKind::format, file, to_words(n), std::to_string(points), "the file is damaged: write it again");
+    }
+    if (rectilinear) {
+        auto* r = vtkRectilinearGrid::SafeDownCast(&grid);
+        const std::array<vtkDataArray*, 3> axes{r->GetXCoordinates(), r->GetYCoordinates(), r->GetZCoordinates()};
+        for (std::size_t d = 0; d < 3; ++d) {
+            if (axes[d] && axes[d]->GetNumberOfTuples() == n[d]) continue;
+            fail(ErrorKind::format, file, std::to_string(n[d]) + " coordinates on axis " + std::to_string(d),
+                 std::to_string(axes[d] ? axes[d]->GetNumberOfTuples() : 0), "the file is damaged: write it again");
+        }
+    }
+    return dims;
+}
+
+std::vector<glm::dvec3> points_of(vtkDataSet& grid, const fs::path& file) {
+    if (auto* curvilinear = vtkStructuredGrid::SafeDownCast(&grid)) return to_points(*curvilinear->GetPoints(), file);
+    std::vector<glm::dvec3> points(static_cast<std::size_t>(grid.GetNumberOfPoints()));
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        grid.GetPoint(static_cast<vtkIdType>(p), &points[p].x);
+        if (std::isfinite(points[p].x) && std::isfinite(points[p].y) && std::isfinite(points[p].z)) continue;
+        fail(ErrorKind::data, file.string() + ", point " + std::to_string(p), "finite coordinates", "NaN or infinity",
+             "look for the program that wrote it");
+    }
+    return points;
+}
+
+std::vector<Field> fields_of(vtkDataSetAttributes& attributes, std::size_t rows, const fs::path& file) {
+    std::vector<Field> fields;
+    for (int i = 0; i < attributes.GetNumberOfArrays(); ++i) {
+        vtkDataArray* array = attributes.GetArray(i);
+        if (!array || array->GetNumberOfComponents() < 1) continue;
+        const std::string name = array->GetName() ? array->GetName() : "unnamed " + std::to_string(i);
+        if (name == vtkDataSetAttributes::GhostArrayName()) continue;
+        if (array->GetNumberOfTuples() != static_cast<vtkIdType>(rows)) {
+            fail(ErrorKind::format, file.string() + ", array \"" + name + "\"", std::to_string(rows) + " rows",
+                 std::to_string(array->GetNumberOfTuples()), "the file is damaged: write it again");
+        }
+        fields.push_back(to_field(*array, name));
+    }
+    return fields;
+}
+
+bool is_visible(vtkDataSet& grid, vtkIdType cell) {
+    if (auto* curvilinear = vtkStructuredGrid::SafeDownCast(&grid)) return curvilinear->IsCellVisible(cell) != 0;
+    if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(&grid)) return rectilinear->IsCellVisible(cell) != 0;
+    return vtkImageData::SafeDownCast(&grid)->IsCellVisible(cell) != 0;
+}
+
+// Leaves out the cells that are blanked or touch a blanked point; ghost copies of a neighbour's cells, too.
+void remove_blanked(Dataset& dataset, vtkDataSet& grid) {
+    if (!grid.HasAnyGhostCells() && !grid.HasAnyGhostPoints() && !grid.HasAnyBlankCells() &&
+        !grid.HasAnyBlankPoints()) {
+        return;
+    }
+    vtkUnsignedCharArray* ghosts = grid.GetCellGhostArray();
+    CellList kept;
+    kept.offsets.push_back(0);
+    std::vector<std::size_t> rows;
+    const CellList all = hexahedra_of(*dataset.grid);
+    for (std::size_t c = 0; c < all.size(); ++c) {
+        const auto cell = static_cast<vtkIdType>(c);
+        const bool copy = ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL) != 0;
+        if (copy || !is_visible(grid, cell)) continue;
+        rows.push_back(c);
+        kept.kinds.push_back(all.kinds[c]);
+        kept.vertices.insert(kept.vertices.end(), all.vertices.begin() + static_cast<std::ptrdiff_t>(8 * c),
+                             all.vertices.begin() + static_cast<std::ptrdiff_t>(8 * c + 8));
+        kept.offsets.push_back(kept.vertices.size());
+    }
+    for (Field& field : dataset.cell_fields) {
+        const auto components = static_cast<std::size_t>(field.components);
+        std::vector<double> values;
+        for (const std::size_t row : rows) {
+            for (std::size_t k = 0; k < components; ++k)
+                values.push_back(field.values[row * components + k]);
+        }
+        field.values = std::move(values);
+    }
+    dataset.ghost_cells = all.size() - kept.size();
+    dataset.grid.reset();
+    dataset.cells = std::move(kept);
+}
+
+}  // namespace
+
+bool is_structured(vtkDataObject& data) {
+    return data.IsA("vtkStructuredGrid") || data.IsA("vtkRectilinearGrid") || data.IsA("vtkImageData");
+}
+
+Dataset structured_to_dataset(vtkDataSet& grid, const fs::path& file, const std::string& format) {
+    Dataset dataset;
+    dataset.source = file.string();
+    dataset.format = format;
+    dataset.grid = require_volume(grid, file);
+    dataset.points = points_of(grid, file);
+    dataset.point_fields = fields_of(*grid.GetPointData(), dataset.points.size(), file);
+    dataset.cell_fields = fields_of(*grid.GetCellData(), dataset.grid->cells(), file);
+    remove_blanked(dataset, grid);
+    if (dataset.cell_count() == 0) {
+        fail(ErrorKind::data, file, "volume cells", "a grid that is blanked as a whole", "check its ghost array");
+    }
+    return dataset;
+}
+
+}  // namespace cellproj

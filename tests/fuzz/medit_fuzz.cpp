@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/text_formats.hpp"
+#include "tests/fuzz/fuzz_reader.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+    return cellproj::fuzz_two_files(cellproj::read_medit, ".mesh", ".sol", bytes, size);
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Writes the small meshes of the tests as seeds: write_seeds FOLDER makes FOLDER/gmsh/…, FOLDER/medit/….
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/text_meshes.hpp"
+
+namespace {
+
+void write(const std::filesystem::path& file, const std::string& bytes) {
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << bytes;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    using namespace cellproj::testing_support;
+    if (count != 2) return 2;
+    const std::filesystem::path folder = arguments[1];
+    for (const int version : {2, 4}) {
+        for (const bool binary : {false, true}) {
+            write(folder / "gmsh" / (std::to_string(version) + (binary ? "_binary" : "_ascii")),
+                  gmsh_file(version, binary, 3));
+        }
+    }
+    write(folder / "medit" / "sample", medit_file() + '\0' + medit_solutions());
+    write(folder / "su2" / "sample", su2_file());
+    write(folder / "tetgen" / "sample", tetgen_nodes(1) + '\0' + tetgen_elements(1));
+}
