@@ -56,6 +56,6 @@ consumer installed -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGIST
 grep -q "^cellproj_DIR:PATH=$prefix/" "$scratch/installed/CMakeCache.txt" || fail "another cellproj was found"
 
 echo "check_package: a consumer of the source tree, without VTK and mesher"
-consumer subdirectory -DCELLPROJ_TREE="$source" -DCELLPROJ_WITH_VTK=OFF -DCELLPROJ_WITH_MESHER=OFF
+consumer subdirectory -DCMAKE_BUILD_TYPE=Debug -DCELLPROJ_TREE="$source" -DCELLPROJ_WITH_VTK=OFF -DCELLPROJ_WITH_MESHER=OFF
 ! [ -e "$scratch/subdirectory/cellproj/tests" ] || fail "tests are configured inside another project"
 echo "check_package: good"

@@ -130,6 +130,27 @@ TEST_F(CommandLine, InfoTellsWhatIsInAFile) {
     }
 }
 
+TEST_F(CommandLine, CheckTellsGoodFromBad) {
+    const Outcome good = run("check cube.vtk");
+    EXPECT_EQ(good.code, 0) << good.text;
+    EXPECT_NE(good.text.find("convex, Delaunay"), std::string::npos) << good.text;
+    const auto json = nlohmann::json::parse(run("check cube.vtk --json").text);
+    EXPECT_EQ(json.at("tetrahedra"), 6);
+    EXPECT_EQ(json.at("faithful"), true);
+    // Three tetrahedra at one face.
+    write("three.vtk", "# vtk DataFile Version 3.0\nthree\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n"
+                       "0 0 0 1 0 0 0 1 0 0 0 1 0 0 -1 0 0 2\nCELLS 3 15\n4 0 1 2 3\n4 0 2 1 4\n4 0 1 2 5\nCELL_TYPES 3\n10\n10\n10\n");
+    const Outcome bad = run("check three.vtk");
+    EXPECT_EQ(bad.code, 1);
+    EXPECT_NE(bad.text.find("overused faces"), std::string::npos) << bad.text;
+}
+
+TEST_F(CommandLine, CellFieldsConstantOrAveraged) {
+    EXPECT_EQ(run("render cube.vtk -o a.exr --size 20x20 --field rank --cell-values averaged").code, 0);
+    EXPECT_EQ(run("render cube.vtk -o b.exr --size 20x20 --field U:x").code, 0);
+    EXPECT_EQ(run("render cube.vtk -o b.exr --size 20x20 --cell-values often").code, 2);
+}
+
 TEST_F(CommandLine, HelpVersionAndUsage) {
     EXPECT_EQ(run("--help").code, 0);
     EXPECT_NE(run("--help").text.find("Examples:"), std::string::npos);

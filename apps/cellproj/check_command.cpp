@@ -33,6 +33,9 @@ void print_text(const Input& input, const MeshCheck& c) {
     if (input.report.flipped > 0) {
         std::printf("%-22s %zu: turned; harmless\n", "stored inside out", input.report.flipped);
     }
+    if (input.report.inverted > 0) {
+        std::printf("%-22s %zu: parts of crushed cells that no split could keep upright\n", "inverted tetrahedra", input.report.inverted);
+    }
     print("flat cells", c.flat_cells, "cells", "they hold no light; harmless");
     print("repeated vertices", c.repeated_vertices, "cells", "collapsed cells; harmless");
     print("overlapping cells", c.overlapping_cells, "cells", "space is drawn twice there: repair the mesh");
@@ -66,6 +69,7 @@ void print_json(const Input& input, const MeshCheck& c) {
                                       {"tetrahedra", input.mesh->tets.size()},
                                       {"points", input.mesh->points.size()},
                                       {"stored_inside_out", input.report.flipped},
+                                      {"inverted", input.report.inverted},
                                       {"flat_cells", to_json(c.flat_cells)},
                                       {"repeated_vertices", to_json(c.repeated_vertices)},
                                       {"overlapping_cells", to_json(c.overlapping_cells)},

@@ -22,7 +22,7 @@ namespace {
 struct RenderOptions {
     InputOptions input;
     std::filesystem::path output, camera, transfer, stats;
-    std::string field, projection = "perspective", size = "512x512";
+    std::string field, projection = "perspective", size = "512x512", cell_values = "constant";
     std::vector<double> from{-1, -2, 1}, up{0, 0, 1}, background{1, 1, 1};
     double orbit_degrees = 0;
     int frames = 1, bits = 8;
@@ -156,6 +156,13 @@ void print_median(const std::vector<Statistics>& pictures) {
                 median([](const Statistics& s) { return s.ms.project; }), median([](const Statistics& s) { return s.ms.draw; }));
 }
 
+// Cell fields are exact as constants; averaged to the points they look smooth.
+ScalarField choose_field(const RenderOptions& options, const Input& input) {
+    ScalarField field = select_scalar(*input.mesh, options.field, input.name);
+    const bool averaged = field.location == FieldLocation::cells && options.cell_values == "averaged";
+    return averaged ? averaged_to_points(*input.mesh, field) : field;
+}
+
 void render_pictures(const RenderOptions& options) {
     // Everything that can be refused without reading the mesh comes first.
     const ImageSize size = parse_size(options.size);
@@ -163,8 +170,7 @@ void render_pictures(const RenderOptions& options) {
     if (!options.stats.empty()) require_writable(options.stats);
 
     const Input input = load(options.input);
-    const auto field =
-        std::make_shared<const ScalarField>(select_scalar(*input.mesh, options.field, input.name));
+    const auto field = std::make_shared<const ScalarField>(choose_field(options, input));
     warn_of_values(*field);
     const Scene scene{input.mesh, field, choose_transfer(options, input, *field)};
     const std::vector<Camera> cameras = choose_cameras(options, input, size);
@@ -210,7 +216,9 @@ void add_render_command(CLI::App& app) {
     add_input_options(*command, options->input);
     command->add_option("-o,--output", options->output, "The picture: .png or .exr; several become NAME_000.png …")
         ->required();
-    command->add_option("--field", options->field, "The field to draw (default: the first); vectors by magnitude");
+    command->add_option("--field", options->field, "The field to draw (default: the first); vectors by magnitude, or U:x, U:y, U:z");
+    command->add_option("--cell-values", options->cell_values, "How cell fields are drawn: constant in a cell, or averaged to the points")
+        ->check(CLI::IsMember({"constant", "averaged"}))->capture_default_str();
     command->add_option("--transfer", options->transfer, "Transfer function (JSON); default: viridis over the 1-99 % range");
     CLI::Option* camera = command->add_option("--camera", options->camera, "Camera or array of cameras (JSON)");
     command->add_option("--from", options->from, "Direction from which the whole mesh is seen: X,Y,Z")
