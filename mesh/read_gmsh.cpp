@@ -236,7 +236,7 @@ GmshElementType GmshReader::element_type() {
 
 void GmshReader::read_element(const GmshElementType& type) {
     std::array<VertexId, 8> corners{};
-    const std::size_t corner_total = type.kind ? corner_count(*type.kind) : 0;
+    const std::size_t corner_total = type.kind ? vertex_count(*type.kind) : 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(type.nodes); ++i) {
         const std::uint64_t tag = version_2_ ? static_cast<std::uint64_t>(integer("a node tag")) : size("a node tag");
         if (i >= corner_total) continue;

@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cstring>
 #include <optional>
 
@@ -286,13 +285,6 @@ std::vector<Field> solution_fields(vtkPointData& arrays, vtkIdType points, const
 }
 
 }  // namespace
-
-bool has_plot3d_suffix(const fs::path& file) {
-    constexpr std::array<const char*, 5> suffixes{".xyz", ".x", ".p3d", ".g", ".bin"};
-    std::string suffix = file.extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-    return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
-}
 
 Dataset read_plot3d(const fs::path& file, const fs::path& solution) {
     const GridFile grid_file = recognise_grid(file);

@@ -55,7 +55,7 @@ void read_cells(TextScanner& scanner, TextCells& cells, std::size_t& skipped) {
     for (std::size_t i = 0; i < count; ++i) {
         const std::int64_t type = scanner.integer("the type of an element");
         if (const std::optional<CellKind> kind = volume_kind(type)) {
-            cells.read(scanner, *kind, corner_count(*kind));
+            cells.read(scanner, *kind, vertex_count(*kind));
         } else if (is_flat(type)) {
             ++skipped;
         } else {

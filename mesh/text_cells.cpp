@@ -7,26 +7,6 @@
 
 namespace cellproj {
 
-std::size_t corner_count(CellKind kind) {
-    switch (kind) {
-        case CellKind::tetrahedron:
-            return 4;
-        case CellKind::hexahedron:
-            return 8;
-        case CellKind::wedge:
-            return 6;
-        case CellKind::pyramid:
-            return 5;
-        case CellKind::pentagonal_prism:
-            return 10;
-        case CellKind::hexagonal_prism:
-            return 12;
-        case CellKind::polyhedron:
-            break;
-    }
-    return 0;
-}
-
 void append_cell(CellList& cells, CellKind kind, std::span<const VertexId> corners) {
     if (cells.offsets.empty()) cells.offsets.push_back(0);
     cells.kinds.push_back(kind);
@@ -37,12 +17,12 @@ void append_cell(CellList& cells, CellKind kind, std::span<const VertexId> corne
 void reserve_cells(CellList& cells, CellKind kind, std::size_t count) {
     cells.kinds.reserve(cells.kinds.size() + count);
     cells.offsets.reserve(cells.kinds.size() + count + 1);
-    cells.vertices.reserve(cells.vertices.size() + count * corner_count(kind));
+    cells.vertices.reserve(cells.vertices.size() + count * vertex_count(kind));
 }
 
 void TextCells::read(TextScanner& scanner, CellKind kind, std::size_t nodes) {
     std::array<VertexId, 12> corners{};
-    const std::size_t corner_total = corner_count(kind);
+    const std::size_t corner_total = vertex_count(kind);
     for (std::size_t i = 0; i < nodes; ++i) {
         const std::int64_t id = scanner.integer("a vertex id") - first_id_;
         if (id < 0 || id >= static_cast<std::int64_t>(max_elements)) {

@@ -7,13 +7,11 @@
 #include <cstdint>
 #include <span>
 
+#include "mesh/cell_faces.hpp"
 #include "mesh/dataset.hpp"
 #include "mesh/text_scanner.hpp"
 
 namespace cellproj {
-
-// How many vertices a cell of this kind has; 0 for a polyhedron.
-std::size_t corner_count(CellKind kind);
 
 // Appends a cell to a list that is empty or well formed.
 void append_cell(CellList& cells, CellKind kind, std::span<const VertexId> corners);

@@ -47,7 +47,6 @@ Dataset to_dataset(vtkUnstructuredGrid& grid, const std::filesystem::path& place
 void require_sound_legacy_cells(const std::filesystem::path& file);
 
 // PLOT3D, read_plot3d.cpp: a single-block binary grid and, unless `solution` is empty, its fields.
-bool has_plot3d_suffix(const std::filesystem::path& file);
 Dataset read_plot3d(const std::filesystem::path& file, const std::filesystem::path& solution);
 
 }  // namespace cellproj
