@@ -18,8 +18,8 @@ packages=(
     libosmesa6-dev libosmesa6 python3-glad
     # pictures, JSON, the command line
     libpng-dev libopenexr-dev nlohmann-json3-dev libcli11-dev
-    # tests and benchmarks
-    libgtest-dev librapidcheck-dev libbenchmark-dev
+    # tests and benchmarks; clang for the sanitizers and libFuzzer
+    clang libclang-rt-dev libgtest-dev librapidcheck-dev libbenchmark-dev
 )
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

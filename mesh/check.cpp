@@ -104,7 +104,8 @@ void check_boundary(const TetMesh& mesh, const Adjacency& adjacency, MeshCheck& 
         if (other == directed.end()) continue;
         surfaces.join(static_cast<CellId>(f), static_cast<CellId>(other->second));
         const auto v = vertices(f), w = vertices(other->second);
-        const auto apex = std::find_if(w.begin(), w.end(), [&](VertexId x) { return x != edge.first && x != edge.second; });
+        const auto is_apex = [&ends = edge](VertexId x) { return x != ends.first && x != ends.second; };
+        const auto apex = std::find_if(w.begin(), w.end(), is_apex);
         if (apex == w.end()) continue;
         convex = convex && orientation(mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[*apex]) <= 0;
     }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -45,7 +44,8 @@ CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, Imag
     const glm::dvec2 picture(size.width, size.height);
     guard_ = {-guard_pictures * picture, (1 + guard_pictures) * picture};
 
-    const auto& [mesh, field] = std::tie(*prepared.scene().mesh, *prepared.scene().field);
+    const TetMesh& mesh = *prepared.scene().mesh;
+    const ScalarField& field = *prepared.scene().field;
     const SceneUnits& units = prepared.units();
     points_.resize(mesh.points.size());
     scalars_.resize(field.values.size());

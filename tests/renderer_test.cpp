@@ -130,15 +130,15 @@ Truth truth_in_unit_cube(const Camera& camera, ImageSize size, const TransferFun
     };
 }
 
-class BothProjections : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(Renderer, BothProjections,
+class EitherProjection : public testing::TestWithParam<Camera::Projection> {};
+INSTANTIATE_TEST_SUITE_P(Renderer, EitherProjection,
                          testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
                          [](const auto& projection) {
                              return projection.param == Camera::Projection::parallel ? "parallel" : "perspective";
                          });
 
 // 1 − exp(−τ·chord) whatever the mesh. 1e-4: float32 terms and blending of up to 100 layers, 3e-6 each (measured).
-TEST_P(BothProjections, ConstantMediumInABox) {
+TEST_P(EitherProjection, ConstantMediumInABox) {
     const double extinction = 1.7;
     for (const glm::dvec3& from : {glm::dvec3(1.3, -2.1, 0.9), glm::dvec3(-0.4, 0.3, 2), glm::dvec3(1, 0.02, 0.01)}) {
         const Camera camera = view_of_unit_cube(GetParam(), from);
@@ -148,7 +148,7 @@ TEST_P(BothProjections, ConstantMediumInABox) {
     }
 }
 
-TEST_P(BothProjections, ConstantMediumInADelaunayMesh) {
+TEST_P(EitherProjection, ConstantMediumInADelaunayMesh) {
     const Camera camera = view_of_unit_cube(GetParam());
     const Scene scene = scene_of(delaunay_mesh(3000, 3), linear, constant_medium(2.3));
     const Truth truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
@@ -156,7 +156,7 @@ TEST_P(BothProjections, ConstantMediumInADelaunayMesh) {
 }
 
 // 2e-3 with the table of 64³: its trilinear interpolation, accumulated over the cells of a ray.
-TEST_P(BothProjections, LinearFieldWithARamp) {
+TEST_P(EitherProjection, LinearFieldWithARamp) {
     for (const int cells : {1, 6, 24}) {
         const Camera camera = view_of_unit_cube(GetParam());
         const Scene scene = scene_of(grid_mesh(cells, 0.2, 5), linear, ramp());
@@ -248,7 +248,7 @@ TransferFunction scaled_ramp(double scale) {
     return {OpticalModel::density, ramp().color_nodes(), nodes};
 }
 
-TEST_P(BothProjections, ScaledByABillionthAndABillion) {
+TEST_P(EitherProjection, ScaledByABillionthAndABillion) {
     const TetMesh mesh = grid_mesh(8, 0.2, 9);
     const ScalarField field = point_field(mesh, linear);
     const Camera camera = view_of_unit_cube(GetParam());
@@ -265,7 +265,7 @@ TEST_P(BothProjections, ScaledByABillionthAndABillion) {
     }
 }
 
-TEST_P(BothProjections, ShiftedByAMillion) {
+TEST_P(EitherProjection, ShiftedByAMillion) {
     const TetMesh mesh = grid_mesh(8, 0.2, 9);
     const ScalarField field = point_field(mesh, linear);
     const Camera camera = view_of_unit_cube(GetParam());
