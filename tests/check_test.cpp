@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -39,6 +40,10 @@ TEST(Check, AGoodMesh) {
     // The five-tetrahedra split: four corners of a sixth of the box, an inner one of a third.
     EXPECT_NEAR(result.volumes[0], 1.0 / 6 / 64, 1e-15);
     EXPECT_NEAR(result.volumes[2], 1.0 / 3 / 64, 1e-15);
+    EXPECT_DOUBLE_EQ(result.edges[0], 0.25);
+    EXPECT_DOUBLE_EQ(result.edges[1], 0.25 * std::sqrt(2.0));
+    EXPECT_TRUE(result.conforming());
+    EXPECT_EQ(result.cavities, 0U);
 }
 
 TEST(Check, DelaunayIsToldFromOthers) {
@@ -54,6 +59,7 @@ TEST(Check, HolesCavitiesAndPieces) {
     }));
     EXPECT_EQ(cavity.components, 1U);
     EXPECT_EQ(cavity.boundary_components, 2U);
+    EXPECT_EQ(cavity.cavities, 1U);
     EXPECT_FALSE(cavity.convex);
     EXPECT_EQ(cavity.isolated_points.count, 1U);  // the point in the middle of the 2×2×2 boxes left out
 
@@ -63,6 +69,8 @@ TEST(Check, HolesCavitiesAndPieces) {
 
     const MeshCheck two = check_mesh(grid_without(6, [&](const glm::dvec3& p) { return in(p.x, 0.33, 0.67); }));
     EXPECT_EQ(two.components, 2U);
+    EXPECT_EQ(two.boundary_components, 2U);
+    EXPECT_EQ(two.cavities, 0U);
     EXPECT_FALSE(two.convex);
 }
 
@@ -79,7 +87,9 @@ TEST(Check, OverlapsAndSharedFaces) {
     mesh.points.emplace_back(0.2, 0.2, -1);
     mesh.tets.push_back({0, 2, 1, 5});
     orient_cells(mesh);
-    EXPECT_EQ(check_mesh(mesh).overused_faces, 1U);
+    result = check_mesh(mesh);
+    EXPECT_EQ(result.overused_faces.count, 1U);
+    EXPECT_EQ(result.overused_faces.first, (std::vector<std::size_t>{2}));  // the two before it are a pair
 }
 
 TEST(Check, FlatCellsAndPoints) {
@@ -97,6 +107,7 @@ TEST(Check, FlatCellsAndPoints) {
     EXPECT_EQ(result.isolated_points.first, (std::vector<std::size_t>{6}));
     EXPECT_EQ(result.coincident_points.first, (std::vector<std::size_t>{4}));
     EXPECT_DOUBLE_EQ(result.coincident_difference, 0.5);
+    EXPECT_EQ(result.coincident_field, "p");
     ASSERT_EQ(result.not_finite.size(), 1U);
     EXPECT_EQ(result.not_finite[0].name, "q");
     EXPECT_EQ(result.not_finite[0].values, 1U);

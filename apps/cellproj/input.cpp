@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 
 #include <map>
+#include <numeric>
+#include <utility>
 
 #include "apps/scenes/sphere_flow.hpp"
 #include "mesh/error.hpp"
@@ -37,6 +39,12 @@ std::string cells_in_words(const Dataset& dataset) {
         text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + plural(kind);
     }
     return text;
+}
+
+std::vector<double> counted(std::size_t n) {
+    std::vector<double> numbers(n);
+    std::iota(numbers.begin(), numbers.end(), 0.0);
+    return numbers;
 }
 
 Input load_sphere_flow() {
@@ -76,7 +84,7 @@ Input load(const InputOptions& options) {
     Input input;
     input.name = options.file;
     const Stopwatch reading;
-    const Dataset dataset = [&] {
+    Dataset dataset = [&] {
         const Progress progress("reading " + input.name);
         return read(options.file, {.solution = options.solution, .blocks = options.blocks, .time = options.time});
     }();
@@ -84,7 +92,13 @@ Input load(const InputOptions& options) {
 
     const Stopwatch splitting;
     const Progress progress("splitting cells");
-    input.mesh = std::make_shared<TetMesh>(tetrahedralize(dataset, &input.report));
+    if (options.number_cells) dataset.cell_fields.push_back({"", 1, counted(dataset.cell_count())});
+    auto mesh = std::make_shared<TetMesh>(tetrahedralize(dataset, &input.report));
+    if (options.number_cells) {
+        input.file_cells = std::move(mesh->cell_fields.back().values);
+        mesh->cell_fields.pop_back();
+    }
+    input.mesh = std::move(mesh);
     input.tetrahedralize_ms = splitting.ms();
     input.cells = cells_in_words(dataset);
     input.format = dataset.format;

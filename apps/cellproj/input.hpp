@@ -26,6 +26,7 @@ struct InputOptions {
     std::filesystem::path solution;  // PLOT3D: --q
     std::vector<std::string> blocks; // --block, empty: all
     std::optional<double> time;      // --time, none: the last
+    bool number_cells = false;       // fill Input::file_cells
 };
 
 // FILE, --q, --block and --time, into `options`, which must live as long as the command.
@@ -42,6 +43,7 @@ struct Input {
     std::vector<std::string> blocks;        // names of the volume blocks; empty: one dataset
     std::vector<double> times;              // of the file's time steps; empty: none
     std::optional<double> time;             // the one that was read
+    std::vector<double> file_cells;         // #T, the volume cell of the file that each tetrahedron is part of; where asked for
     double read_ms = 0, tetrahedralize_ms = 0;
     // What an embedded scene brings with it.
     std::optional<Camera> camera;
