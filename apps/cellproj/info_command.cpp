@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "commands.hpp"
 #include "input.hpp"
@@ -20,49 +29,139 @@ void print_fields(const TetMesh& mesh, FieldLocation location) {
         std::printf("  %-24s on %s, %s%.6g .. %.6g", field.name.c_str(), points ? "points" : "cells",
                     field.components == 1 ? "" : (std::to_string(field.components) + " components, magnitude ").c_str(),
                     values.low, values.high);
+        if (values.low == values.high) std::printf(", constant");
         if (values.not_finite > 0) std::printf(", %zu not finite", values.not_finite);
         std::printf("\n");
     }
+}
+
+void print_points(const Input& input) {
+    const TetMesh& mesh = *input.mesh;
+    std::vector<bool> used(mesh.points.size(), false);
+    for (const auto& tet : mesh.tets) {
+        for (const VertexId v : tet) used[v] = true;
+    }
+    std::printf("points      %zu", mesh.points.size() - input.report.added_points);
+    if (input.grid) std::printf(" (%zux%zux%zu)", input.grid->ni, input.grid->nj, input.grid->nk);
+    const auto unused = std::count(used.begin(), used.end(), false);
+    if (unused > 0) std::printf(" (%td of them in no volume cell)", unused);
+    std::printf("\n");
+}
+
+void print_tetrahedra(const Input& input) {
+    const TetrahedralizeReport& report = input.report;
+    std::printf("tetrahedra  %zu (%zu of zero volume, %zu turned to positive volume", report.tets, report.flat, report.flipped);
+    if (report.inverted > 0) std::printf(", %zu of crushed cells, see cellproj check", report.inverted);
+    if (report.added_points > 0) std::printf(", %zu points added inside cells", report.added_points);
+    std::printf(")\n");
 }
 
 void print_blocks(const Input& input) {
     if (input.blocks.empty()) return;
     std::printf("blocks      %zu of volumes", input.blocks.size());
     if (input.skipped_blocks > 0) std::printf(" (%zu more hold none and are skipped)", input.skipped_blocks);
-    std::printf("\n");
+    std::printf("; --block NAME chooses\n");
     for (const std::string& name : input.blocks) std::printf("  %s\n", name.c_str());
 }
 
 void print_times(const Input& input) {
     if (!input.time) return;
-    std::printf("time        %.6g (of %zu steps, %.6g .. %.6g)\n", *input.time, input.times.size(), input.times.front(),
-                input.times.back());
+    if (input.times.size() == 1) {
+        std::printf("time        %.6g, the only step\n", *input.time);
+        return;
+    }
+    std::printf("time        %.6g (of %zu steps, %.6g .. %.6g; --time T chooses)\n", *input.time, input.times.size(),
+                input.times.front(), input.times.back());
+}
+
+void print_size(const TetMesh& mesh) {
+    const Bounds box = bounds(mesh.points);
+    for (int axis = 0; axis < 3; ++axis) {
+        std::printf("%s%c %.6g .. %.6g%s", axis == 0 ? "bounds      " : ", ", "xyz"[axis], box.low[axis], box.high[axis],
+                    axis == 2 ? "\n" : "");
+    }
+    double volume = 0.0;
+    for (CellId cell = 0; cell < mesh.tets.size(); ++cell) volume += signed_volume(mesh, cell);
+    std::printf("volume      %.6g\n", volume);
+}
+
+// What a user is likely to look for first: a scalar that varies and does not merely count or mark, else a vector that varies,
+// else anything that varies. Nothing when no field does.
+std::optional<std::string> field_to_look_at(const TetMesh& mesh, std::size_t added_points) {
+    std::optional<std::string> best;
+    int best_rank = 0;
+    for (const FieldLocation location : {FieldLocation::points, FieldLocation::cells}) {
+        for (const Field& field : location == FieldLocation::points ? mesh.point_fields : mesh.cell_fields) {
+            const ScalarRange values = range(as_scalar(field, location).values);
+            if (values.low == values.high) continue;
+            // Points added inside cells have means of numbers.
+            const std::size_t added = location == FieldLocation::points ? added_points : 0;
+            const auto end = field.values.end() - static_cast<std::ptrdiff_t>(added * static_cast<std::size_t>(field.components));
+            const bool counts = std::all_of(field.values.begin(), end, [](double x) { return x == std::floor(x); });
+            const int rank = counts ? 1 : field.components > 1 ? 2 : 3;
+            if (rank > best_rank) {
+                best_rank = rank;
+                best = field.name;
+            }
+        }
+    }
+    return best;
+}
+
+// As the shell takes it: in single quotes where it must be.
+std::string quoted(const std::string& word) {
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+        return std::isalnum(c) || c >= 0x80 || std::string_view("_-./:,=+@%").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    if (plain) return word;
+    std::string result = "'";
+    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
+std::string number(double x) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
+    return {text.data(), end};
+}
+
+void print_first_picture(const Input& input, const InputOptions& options) {
+    const std::optional<std::string> field = field_to_look_at(*input.mesh, input.report.added_points);
+    if (!field) {
+        const bool needs_solution = options.solution.empty() && input.format.starts_with("PLOT3D");
+        std::printf("\nNo picture yet: %s\n", needs_solution ? "a PLOT3D grid has its values in a solution file, give it by --q FILE"
+                                                             : "no field of this file varies over the mesh");
+        return;
+    }
+    std::string chosen;
+    if (!options.solution.empty()) chosen += " --q " + quoted(options.solution.string());
+    for (const std::string& block : options.blocks) chosen += " --block " + quoted(block);
+    if (options.time && input.time) chosen += " --time " + number(*input.time);
+    std::printf("\nA first picture:\n  cellproj render %s%s -o picture.png --field %s\n", quoted(input.name).c_str(),
+                chosen.c_str(), quoted(*field).c_str());
 }
 
 void print_info(const InputOptions& options) {
     const Input input = load(options);
     const TetMesh& mesh = *input.mesh;
-    const Bounds box = bounds(mesh.points);
     std::printf("%s: %s\n", input.name.c_str(), input.format.c_str());
-    std::printf("points      %zu", mesh.points.size());
-    if (input.grid) std::printf(" (%zux%zux%zu)", input.grid->ni, input.grid->nj, input.grid->nk);
-    std::printf("\ncells       %s", input.cells.c_str());
+    print_points(input);
+    std::printf("cells       %s", input.cells.c_str());
     if (input.skipped_cells > 0) std::printf(" (%zu more are no volumes and are skipped)", input.skipped_cells);
-    std::printf("\ntetrahedra  %zu (%zu of zero volume, %zu turned to positive volume)\n", input.report.tets,
-                input.report.flat, input.report.flipped);
+    std::printf("\n");
+    print_tetrahedra(input);
     print_blocks(input);
     print_times(input);
-    for (int axis = 0; axis < 3; ++axis) {
-        std::printf("%s%c %.6g .. %.6g%s", axis == 0 ? "bounds      " : ", ", "xyz"[axis], box.low[axis], box.high[axis],
-                    axis == 2 ? "\n" : "");
-    }
-    std::printf("fields%s\n", mesh.point_fields.empty() && mesh.cell_fields.empty() ? "      none" : "");
+    print_size(mesh);
+    const auto is_vector = [](const Field& field) { return field.components > 1; };
+    const bool vectors = std::any_of(mesh.point_fields.begin(), mesh.point_fields.end(), is_vector) ||
+                         std::any_of(mesh.cell_fields.begin(), mesh.cell_fields.end(), is_vector);
+    std::printf("fields%s\n", mesh.point_fields.empty() && mesh.cell_fields.empty() ? "      none"
+                              : vectors ? "      (a component of NAME: --field NAME:x, NAME:y, NAME:z or NAME:0 and so on)"
+                                        : "");
     print_fields(mesh, FieldLocation::points);
     print_fields(mesh, FieldLocation::cells);
-    if (mesh.point_fields.empty() && mesh.cell_fields.empty()) return;
-    std::printf("\nA first picture:\n  cellproj render %s%s -o picture.png --field %s\n", input.name.c_str(),
-                options.solution.empty() ? "" : (" --q " + options.solution.string()).c_str(),
-                select_scalar(mesh, "", input.name).name.c_str());
+    print_first_picture(input, options);
 }
 
 }  // namespace
