@@ -12,9 +12,12 @@
 
 #include "mesh/cell_faces.hpp"
 #include "mesh/tetrahedralize.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace cellproj {
 namespace {
+
+using testing_support::total_volume;
 
 Dataset single_cell(CellKind kind, std::vector<glm::dvec3> points, std::vector<VertexId> vertices) {
     Dataset dataset;
@@ -26,13 +29,6 @@ Dataset single_cell(CellKind kind, std::vector<glm::dvec3> points, std::vector<V
 
 const std::vector<glm::dvec3> cube{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-
-double total_volume(const TetMesh& mesh) {
-    double sum = 0.0;
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-        sum += signed_volume(mesh, static_cast<CellId>(t));
-    return sum;
-}
 
 // Volumes of a few units, from at most 30 tetrahedra of rounded coordinates.
 constexpr double volume_tolerance = 1e-9;

@@ -23,16 +23,12 @@
 #include "mesh/dataset.hpp"
 #include "mesh/read.hpp"
 #include "mesh/tetrahedralize.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace cellproj {
 namespace {
 
-double total_volume(const TetMesh& mesh) {
-    double sum = 0.0;
-    for (CellId t = 0; t < mesh.tets.size(); ++t)
-        sum += signed_volume(mesh, t);
-    return sum;
-}
+using testing_support::total_volume;
 
 // The divergence theorem for the field x/3, seen from the middle of the mesh to keep the terms small.
 double volume_inside_boundary(const TetMesh& mesh, const Adjacency& adjacency) {

@@ -22,6 +22,7 @@
 #include "mesh/mesher.hpp"
 #include "mesh/mesher_format.hpp"
 #include "tests/mesher_fixtures.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace cellproj {
 namespace {
@@ -29,6 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using mesher_fixtures::error_of;
 using mesher_fixtures::unit_cube;
+using testing_support::unit_tet;
 
 class MesherFailure : public testing::Test {
 protected:
@@ -76,13 +78,6 @@ protected:
     fs::path folder_;
 };
 
-TetMesh one_tet() {
-    TetMesh mesh;
-    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    mesh.tets = {{0, 1, 2, 3}};
-    return mesh;
-}
-
 TEST_F(MesherFailure, SignalIsToldByName) {
     expect_failure(script("kill -SEGV $$"), "cellproj-mesher died of SIGSEGV");
     expect_failure(script("echo assertion lost >&2; kill -ABRT $$"), "died of SIGABRT (it said: assertion lost)");
@@ -121,27 +116,27 @@ TEST_F(MesherFailure, GarbageIsRefused) {
 }
 
 TEST_F(MesherFailure, EndlessAnswerIsCutOff) {
-    std::string answer = encode_answer(one_tet());
+    std::string answer = encode_answer(unit_tet());
     std::ofstream(folder_ / "answer", std::ios::binary) << answer;
     expect_failure(script("cat '" + (folder_ / "answer").string() + "'; exec yes"), "expected a body of");
 }
 
 TEST_F(MesherFailure, AnswerIsCheckedBeforeUse) {
-    EXPECT_EQ(run(answering(encode_answer(one_tet()))).tets.size(), 1U);  // the fixture itself is sound
+    EXPECT_EQ(run(answering(encode_answer(unit_tet()))).tets.size(), 1U);  // the fixture itself is sound
 
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.tets[0] = {0, 1, 2, 4};
     expect_failure(answering(encode_answer(mesh)), "4");
-    mesh = one_tet();
+    mesh = unit_tet();
     mesh.points[2].z = std::numeric_limits<double>::quiet_NaN();
     expect_failure(answering(encode_answer(mesh)), "finite");
-    mesh = one_tet();
+    mesh = unit_tet();
     mesh.tets.clear();
     expect_failure(answering(encode_answer(mesh)), "no cells");
 }
 
 TEST_F(MesherFailure, InvertedCellsAreTurned) {
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.tets[0] = {0, 2, 1, 3};
     const TetMesh turned = run(answering(encode_answer(mesh)));
     EXPECT_EQ(signed_volume(turned, 0), 1.0 / 6.0);
@@ -243,7 +238,7 @@ TEST(MesherFormat, RequestComesBackAsItWas) {
 }
 
 TEST(MesherFormat, AnswerComesBackAsItWas) {
-    TetMesh sent = one_tet();
+    TetMesh sent = unit_tet();
     EXPECT_TRUE(decode_answer(encode_answer(sent), "test").cell_fields.empty());
     sent.cell_fields = {{"region", 1, {4.0}}};
     const TetMesh got = decode_answer(encode_answer(sent), "test");
@@ -255,7 +250,7 @@ TEST(MesherFormat, AnswerComesBackAsItWas) {
 }
 
 TEST(MesherFormat, EveryTruncationIsRefused) {
-    const std::string request = encode_request(full_complex(), 0.0, 0.0), answer = encode_answer(one_tet());
+    const std::string request = encode_request(full_complex(), 0.0, 0.0), answer = encode_answer(unit_tet());
     for (std::size_t n = 0; n < request.size(); ++n)
         EXPECT_THROW(decode_request(request.substr(0, n), "test"), Error) << n;
     for (std::size_t n = 0; n < answer.size(); ++n)
@@ -282,11 +277,11 @@ TEST(MesherFormat, WildNumbersDoNoHarm) {
     };
     decodes_or_throws([](const std::string& m) { decode_request(m, "test"); },
                       encode_request(full_complex(), 0.0, 0.0));
-    decodes_or_throws([](const std::string& m) { decode_answer(m, "test"); }, encode_answer(one_tet()));
+    decodes_or_throws([](const std::string& m) { decode_answer(m, "test"); }, encode_answer(unit_tet()));
 }
 
 TEST(MesherFormat, ForeignVersionsAndKindsAreNamed) {
-    std::string answer = encode_answer(one_tet());
+    std::string answer = encode_answer(unit_tet());
     EXPECT_NE(std::string(error_of([&] { decode_request(answer, "test"); }).what()).find("found kind 2"),
               std::string::npos);
     answer[8] = 9;
@@ -295,7 +290,7 @@ TEST(MesherFormat, ForeignVersionsAndKindsAreNamed) {
 }
 
 TEST(MesherFormat, AnswersAnnounceTheirSize) {
-    const std::string answer = encode_answer(one_tet());
+    const std::string answer = encode_answer(unit_tet());
     for (std::size_t n = 0; n < 24; ++n)
         EXPECT_FALSE(announced_answer_size(answer.substr(0, n)).has_value()) << n;
     EXPECT_EQ(announced_answer_size(answer.substr(0, 24)), answer.size());

@@ -19,6 +19,7 @@
 #include "mesh/mesher_format.hpp"
 #include "mesh/predicates.hpp"
 #include "tests/mesher_fixtures.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace cellproj {
 namespace {
@@ -26,18 +27,12 @@ namespace {
 using mesher_fixtures::add_box;
 using mesher_fixtures::error_of;
 using mesher_fixtures::unit_cube;
+using testing_support::total_volume;
 
 MesherOptions real_mesher() {
     MesherOptions options;
     options.program = CELLPROJ_MESHER_PROGRAM;
     return options;
-}
-
-double volume(const TetMesh& mesh) {
-    double sum = 0.0;
-    for (CellId c = 0; c < mesh.tets.size(); ++c)
-        sum += signed_volume(mesh, c);
-    return sum;
 }
 
 // Divergence theorem, over facets fanned from their first vertex.
@@ -90,7 +85,7 @@ Sphere make_sphere(const glm::dvec3& center, double radius, unsigned rings, unsi
 TEST(Mesher, UnitCubeHasVolumeOne) {
     const TetMesh mesh = tetrahedralize(unit_cube(), real_mesher());
     EXPECT_GE(mesh.tets.size(), 5U);        // no cube falls into fewer
-    EXPECT_NEAR(volume(mesh), 1.0, 1e-12);  // a handful of cells, each within a few ulp
+    EXPECT_NEAR(total_volume(mesh), 1.0, 1e-12);  // a handful of cells, each within a few ulp
     EXPECT_TRUE(mesh.cell_fields.empty());
     expect_all_positive(mesh);
 }
@@ -118,10 +113,10 @@ TEST(Mesher, HoleIsLeftEmpty) {
     ASSERT_GT(ball, 3.5);  // the fixture itself: below 4π/3 ≈ 4.19, above 80 % of it
 
     // Some hundred cells, each within a few ulp of 64: 1e-12 of the whole leaves a factor of ten.
-    EXPECT_NEAR(volume(tetrahedralize(complex, real_mesher())), 64.0, 64e-12);
+    EXPECT_NEAR(total_volume(tetrahedralize(complex, real_mesher())), 64.0, 64e-12);
     complex.holes = {{0.1, 0.2, 0.3}};
     const TetMesh mesh = tetrahedralize(complex, real_mesher());
-    EXPECT_NEAR(volume(mesh), 64.0 - ball, 64e-12);
+    EXPECT_NEAR(total_volume(mesh), 64.0 - ball, 64e-12);
     expect_all_positive(mesh);
 }
 
@@ -178,7 +173,7 @@ TEST(Mesher, EveryCellKeepsTheVolumeBound) {
     for (CellId c = 0; c < mesh.tets.size(); ++c)
         ASSERT_LE(signed_volume(mesh, c), 1e-3 + volume_slack);
     EXPECT_GE(mesh.tets.size(), 1000U);
-    EXPECT_NEAR(volume(mesh), 1.0, 1e-12);
+    EXPECT_NEAR(total_volume(mesh), 1.0, 1e-12);
 }
 
 TEST(Mesher, EveryRegionKeepsItsOwnBound) {
@@ -230,7 +225,7 @@ TEST(Mesher, QualityBoundsTheRadiusEdgeRatio) {
     // All angles of the input are right ones, for which Delaunay refinement keeps its bound (Shewchuk 1998); the slack
     // is the rounding of the circumcentre.
     EXPECT_LE(worst_ratio(mesh), 1.5 + 1e-9);
-    EXPECT_NEAR(volume(mesh), 1.0, 1e-12);
+    EXPECT_NEAR(total_volume(mesh), 1.0, 1e-12);
 }
 
 TEST(Mesher, RefusesBadComplexes) {
@@ -304,7 +299,7 @@ TEST(Mesher, SelfIntersectionIsToldInWords) {
     EXPECT_NE(error.found().find("intersects itself"), std::string::npos) << error.what();
 
     const TetMesh alive = tetrahedralize(unit_cube(), real_mesher());  // and nothing lingers from the failure
-    EXPECT_NEAR(volume(alive), 1.0, 1e-12);
+    EXPECT_NEAR(total_volume(alive), 1.0, 1e-12);
 }
 
 TEST(Mesher, CoplanarPointsAreAnError) {
@@ -350,7 +345,7 @@ TEST(MesherProgram, AnswersAndNothingElse) {
     EXPECT_EQ(result.code, 0);
     EXPECT_EQ(result.messages, "");
     // The format leaves the orientation of cells to `tetrahedralize`.
-    EXPECT_NEAR(std::abs(volume(decode_answer(result.output, "answer"))), 1.0, 1e-12);
+    EXPECT_NEAR(std::abs(total_volume(decode_answer(result.output, "answer"))), 1.0, 1e-12);
 }
 
 }  // namespace

@@ -9,16 +9,15 @@
 #include "mesh/dataset.hpp"
 #include "mesh/error.hpp"
 #include "mesh/tetrahedralize.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace cellproj {
 namespace {
 
+using testing_support::unit_tet;
+
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-TetMesh one_tet() {
-    return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}, {}, {}};
-}
 
 Field point_scalar(const std::string& name, double first) {
     return {name, 1, {first, 1, 2, 3}};
@@ -37,7 +36,7 @@ Error error_of(const TetMesh& mesh, const std::string& name) {
 }
 
 TEST(SelectScalar, TakesPointFieldsBeforeCellFields) {
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.cell_fields = {cell_scalar("p", 7), cell_scalar("t", 8)};
     mesh.point_fields = {point_scalar("p", -1)};
     const ScalarField p = select_scalar(mesh, "p", "");
@@ -49,7 +48,7 @@ TEST(SelectScalar, TakesPointFieldsBeforeCellFields) {
 }
 
 TEST(SelectScalar, GivesTheMagnitudeOfVectorsAndKeepsTheSignOfScalars) {
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.point_fields = {{"U", 3, {2, 3, 6, -1, 2, -2, 0, 0, 0, nan, 0, 0}}, point_scalar("p", -5)};
     const std::vector<double> u = select_scalar(mesh, "U", "").values;
     ASSERT_EQ(u.size(), 4U);
@@ -61,7 +60,7 @@ TEST(SelectScalar, GivesTheMagnitudeOfVectorsAndKeepsTheSignOfScalars) {
 }
 
 TEST(SelectScalar, AcceptsAnotherCaseOnlyWhereItIsUnique) {
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.point_fields = {point_scalar("Pressure", 1), point_scalar("T", 2), point_scalar("t", 3)};
     mesh.cell_fields = {cell_scalar("Pressure", 4)};
     EXPECT_EQ(select_scalar(mesh, "pressure", "").name, "Pressure");  // one spelling, though on points and on cells
@@ -72,7 +71,7 @@ TEST(SelectScalar, AcceptsAnotherCaseOnlyWhereItIsUnique) {
 }
 
 TEST(SelectScalar, WithoutANameTakesTheFirstScalarThenTheFirstField) {
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.point_fields = {{"U", 3, std::vector<double>(12, 1.0)}};
     EXPECT_EQ(select_scalar(mesh, "", "").name, "U");
     mesh.cell_fields = {cell_scalar("c", 1)};
@@ -82,7 +81,7 @@ TEST(SelectScalar, WithoutANameTakesTheFirstScalarThenTheFirstField) {
 }
 
 TEST(SelectScalar, ListsWhatThereIsWhenTheNameIsUnknown) {
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.point_fields = {point_scalar("Density", 1)};
     mesh.cell_fields = {{"Velocity", 3, {1, 2, 3}}};
     const Error error = error_of(mesh, "Densty");
@@ -93,12 +92,12 @@ TEST(SelectScalar, ListsWhatThereIsWhenTheNameIsUnknown) {
 }
 
 TEST(SelectScalar, SaysSoWhenThereIsNoField) {
-    EXPECT_EQ(error_of(one_tet(), "").kind(), ErrorKind::data);
-    EXPECT_EQ(error_of(one_tet(), "p").kind(), ErrorKind::data);
+    EXPECT_EQ(error_of(unit_tet(), "").kind(), ErrorKind::data);
+    EXPECT_EQ(error_of(unit_tet(), "p").kind(), ErrorKind::data);
 }
 
 TEST(SelectScalar, GivesOneComponentBehindAColon) {
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.point_fields = {{"U", 3, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}}, point_scalar("a:x", 20)};
     mesh.cell_fields = {{"T", 9, {0, 1, 2, 3, 4, 5, 6, 7, 8}}, {"a", 2, {30, 31}}};
     const ScalarField z = select_scalar(mesh, "U:z", "");
@@ -116,7 +115,7 @@ TEST(SelectScalar, GivesOneComponentBehindAColon) {
 }
 
 TEST(SelectScalar, RefusesComponentsThatAreNotThere) {
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.cell_fields = {{"U", 3, {1, 2, 3}}, {"V", 2, {1, 2}}, cell_scalar("p", 1)};
     for (const char* name : {"U:3", "U:-1", "U:w", "U:", "U:xy", "V:z", "p:y", "U:0x"}) {
         const Error error = error_of(mesh, name);
@@ -202,7 +201,7 @@ TEST(AveragedToPoints, WeighsByVolume) {
 }
 
 TEST(ScalarField, AtLooksUpTheVertexOrTheCell) {
-    TetMesh mesh = one_tet();
+    TetMesh mesh = unit_tet();
     mesh.tets = {{3, 1, 2, 0}};
     const ScalarField on_points{"", FieldLocation::points, {10, 11, 12, 13}};
     const ScalarField on_cells{"", FieldLocation::cells, {5}};

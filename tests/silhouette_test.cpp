@@ -8,21 +8,18 @@
 #include <cmath>
 #include <random>
 
-#include "mesh/predicates.hpp"
 #include "tests/support/tet_rays.hpp"
 
 namespace cellproj {
 namespace {
 
+using testing_support::area;
 using testing_support::cast;
+using testing_support::coarse_tet;
 using testing_support::Points;
+using testing_support::random_tet;
+using testing_support::random_weights;
 using testing_support::screen;
-using testing_support::volume;
-
-double area(const Silhouette& s, std::size_t t) {
-    const auto& [a, b, c] = s.triangles[t];
-    return 0.5 * std::abs(doubled_area(s.vertices[a].position, s.vertices[b].position, s.vertices[c].position));
-}
 
 class SilhouetteAgainstRays : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(ParallelAndPerspective, SilhouetteAgainstRays, testing::Bool());
@@ -31,26 +28,22 @@ INSTANTIATE_TEST_SUITE_P(ParallelAndPerspective, SilhouetteAgainstRays, testing:
 TEST_P(SilhouetteAgainstRays, TheSmallestRidgeIsTheSegmentOfTheRay) {
     const bool perspective = GetParam();
     std::mt19937_64 random(201);
-    std::uniform_real_distribution<double> unit(-1, 1), share(0.001, 1);
     int checked = 0;
     for (int trial = 0; trial < 4000; ++trial) {
-        Points points;
-        const double stretch = std::pow(20.0, unit(random));
-        for (auto& p : points) p = {unit(random), unit(random), 1.2 + (1 + unit(random)) * stretch};
-        if (volume(points) < 1e-3 * stretch) continue;
-        const std::array<double, 4> s{unit(random), unit(random), unit(random), unit(random)};
+        const auto tet = random_tet(random);
+        if (!tet) continue;
+        const auto& [points, s, stretch] = *tet;
         const Silhouette silhouette = make_silhouette(screen(points, s, perspective), perspective);
         ASSERT_GT(silhouette.triangle_count, 0U);
         for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {
-            double w[3] = {share(random), share(random), share(random)};
-            const double sum = w[0] + w[1] + w[2];
+            const auto w = random_weights(random, 0.001);
             SilhouetteVertex v{{0, 0}, 0, 0, {0, 0, 0}};
             for (std::size_t k = 0; k < 3; ++k) {
                 const SilhouetteVertex& corner = silhouette.vertices[silhouette.triangles[t][k]];
-                v.position += w[k] / sum * corner.position;
-                v.base_depth += w[k] / sum * corner.base_depth;
-                v.base_scalar += w[k] / sum * corner.base_scalar;
-                v.ridges += w[k] / sum * corner.ridges;
+                v.position += w[k] * corner.position;
+                v.base_depth += w[k] * corner.base_depth;
+                v.base_scalar += w[k] * corner.base_scalar;
+                v.ridges += w[k] * corner.ridges;
             }
             const auto segment = cast(points, s, v.position, perspective);
             ASSERT_TRUE(segment) << "trial " << trial;
@@ -82,12 +75,9 @@ TEST_P(SilhouetteAgainstRays, TheSmallestRidgeIsTheSegmentOfTheRay) {
 // On a coarse grid every class, degenerate ones included, comes up: the triangles have the area of the classical split.
 TEST(Silhouette, CoversWhatTheClassicalTrianglesCover) {
     std::mt19937_64 random(202);
-    std::uniform_int_distribution<int> coarse(0, 4);
     std::array<int, 5> seen{};
     for (int trial = 0; trial < 20000; ++trial) {
-        Points points;
-        for (auto& p : points) p = glm::dvec3(coarse(random), coarse(random), coarse(random));
-        const auto corners = screen(points, {1, 2, 3, 4}, false);
+        const auto corners = screen(coarse_tet(random), {1, 2, 3, 4}, false);
         const ProjectedTet tet = project_tet(corners, false);
         const Silhouette silhouette = make_silhouette(corners, false);
         const double thickness = tet.vertices[static_cast<std::size_t>(tet.thick)].thickness;
@@ -97,10 +87,7 @@ TEST(Silhouette, CoversWhatTheClassicalTrianglesCover) {
         }
         ++seen[tet.triangle_count()];
         double classical = 0, covered = 0;
-        for (std::size_t t = 0; t < tet.triangle_count(); ++t) {
-            const auto& [a, b, c] = tet.triangles[t];
-            classical += 0.5 * std::abs(doubled_area(tet.vertices[a].position, tet.vertices[b].position, tet.vertices[c].position));
-        }
+        for (std::size_t t = 0; t < tet.triangle_count(); ++t) classical += area(tet, t);
         for (std::size_t t = 0; t < silhouette.triangle_count; ++t) covered += area(silhouette, t);
         ASSERT_NEAR(covered, classical, 1e-12) << "trial " << trial;
         for (const SilhouetteVertex& v : silhouette.vertices) {

@@ -20,13 +20,8 @@ namespace cellproj {
 namespace {
 
 using testing_support::grid_mesh;
+using testing_support::total_volume;
 using testing_support::unit_tet;
-
-double volume(const TetMesh& mesh) {
-    double sum = 0;
-    for (CellId cell = 0; cell < mesh.tets.size(); ++cell) sum += signed_volume(mesh, cell);
-    return sum;
-}
 
 TEST(FaceVertices, TurnCounterClockwiseSeenFromOutside) {
     const TetMesh mesh = unit_tet();
@@ -58,7 +53,7 @@ TEST(Adjacency, GridHasTheFacesOfItsSurface) {
     EXPECT_EQ(mesh.tets.size(), 5U * n * n * n);
     EXPECT_EQ(adjacency.overused_faces, 0U);
     EXPECT_EQ(boundary_faces(adjacency).size(), 12U * n * n);  // two triangles for each square of the cube's surface
-    EXPECT_NEAR(volume(mesh), 1.0, 1e-12);                     // rounding of 625 volumes
+    EXPECT_NEAR(total_volume(mesh), 1.0, 1e-12);                     // rounding of 625 volumes
 }
 
 TEST(Adjacency, NeighboursShareTheFaceAndKnowEachOther) {
@@ -88,7 +83,7 @@ TEST(BoundaryFaces, EncloseTheVolumeOfTheCells) {
         const auto v = face_vertices(mesh.tets[cell], face);
         enclosed += glm::dot(mesh.points[v[0]], glm::cross(mesh.points[v[1]], mesh.points[v[2]])) / 6;
     }
-    EXPECT_NEAR(enclosed, volume(mesh), 1e-12);
+    EXPECT_NEAR(enclosed, total_volume(mesh), 1e-12);
 }
 
 TEST(Adjacency, ThreeCellsAtAFacePairOnceAndAreCounted) {

@@ -18,17 +18,16 @@
 namespace cellproj {
 namespace {
 
+using testing_support::area;
 using testing_support::cast;
+using testing_support::coarse_tet;
 using testing_support::Points;
+using testing_support::random_tet;
+using testing_support::random_weights;
 using testing_support::screen;
 using testing_support::volume;
 
 ProjectedTet parallel(const Points& points) { return project_tet(screen(points, {1, 2, 3, 4}, false), false); }
-
-double area(const ProjectedTet& tet, std::size_t t) {
-    const auto& [a, b, c] = tet.triangles[t];
-    return 0.5 * std::abs(doubled_area(tet.vertices[a].position, tet.vertices[b].position, tet.vertices[c].position));
-}
 
 TEST(ProjectionClass, VertexInTriangle) {
     // Corner 3 behind the triangle of the others, over its centroid.
@@ -127,11 +126,9 @@ TEST(ProjectTet, ThicknessIntegratesToTheVolume) {
 // faces' areas sum to.
 TEST(ProjectTet, TrianglesTileTheSilhouette) {
     std::mt19937_64 random(102);
-    std::uniform_int_distribution<int> coarse(0, 4);  // a 5×5 grid: every degenerate case comes up often
     std::array<int, 5> seen{};
     for (int trial = 0; trial < 20000; ++trial) {
-        Points points;
-        for (auto& p : points) p = glm::dvec3(coarse(random), coarse(random), coarse(random));
+        const Points points = coarse_tet(random);
         const ProjectedTet tet = parallel(points);
         ++seen[tet.triangle_count()];
         double triangles = 0, faces = 0;
@@ -158,26 +155,22 @@ INSTANTIATE_TEST_SUITE_P(ParallelAndPerspective, AgainstRays, testing::Bool());
 TEST_P(AgainstRays, InterpolatedTermsAreTheSegmentOfTheRay) {
     const bool perspective = GetParam();
     std::mt19937_64 random(103);
-    std::uniform_real_distribution<double> unit(-1, 1), share(0.01, 1);
     int checked = 0;
     for (int trial = 0; trial < 3000; ++trial) {
-        Points points;
-        const double stretch = std::pow(20.0, unit(random));  // long cells along the view, up to 20:1 from near to far
-        for (auto& p : points) p = {unit(random), unit(random), 1.2 + (1 + unit(random)) * stretch};
-        if (volume(points) < 1e-3 * stretch) continue;
-        const std::array<double, 4> s{unit(random), unit(random), unit(random), unit(random)};
+        const auto cell = random_tet(random);
+        if (!cell) continue;
+        const auto& [points, s, stretch] = *cell;
         const ProjectedTet tet = project_tet(screen(points, s, perspective), perspective);
         for (std::size_t t = 0; t < tet.triangle_count(); ++t) {
-            double w[3] = {share(random), share(random), share(random)};
-            const double sum = w[0] + w[1] + w[2];
+            const auto w = random_weights(random, 0.01);
             ProjectedVertex v{{0, 0}, 0, 0, 0, 0};
             for (std::size_t k = 0; k < 3; ++k) {
                 const ProjectedVertex& corner = tet.vertices[tet.triangles[t][k]];
-                v.position += w[k] / sum * corner.position;
-                v.front_depth += w[k] / sum * corner.front_depth;
-                v.thickness += w[k] / sum * corner.thickness;
-                v.front_scalar += w[k] / sum * corner.front_scalar;
-                v.back_scalar += w[k] / sum * corner.back_scalar;
+                v.position += w[k] * corner.position;
+                v.front_depth += w[k] * corner.front_depth;
+                v.thickness += w[k] * corner.thickness;
+                v.front_scalar += w[k] * corner.front_scalar;
+                v.back_scalar += w[k] * corner.back_scalar;
             }
             const auto segment = cast(points, s, v.position, perspective);
             ASSERT_TRUE(segment) << "trial " << trial;

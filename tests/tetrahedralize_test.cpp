@@ -11,9 +11,12 @@
 #include <random>
 
 #include "mesh/error.hpp"
+#include "tests/support/meshes.hpp"
 
 namespace cellproj {
 namespace {
+
+using testing_support::total_volume;
 
 // The points of an ni x nj x nk grid in the order of GridDimensions, unit spacing, each moved by up to `jitter`.
 std::vector<glm::dvec3> grid_points(const GridDimensions& grid, double jitter, std::mt19937_64& random) {
@@ -98,13 +101,6 @@ Dataset single_cell(CellKind kind, std::vector<glm::dvec3> points, std::vector<V
 
 const std::vector<glm::dvec3> cube{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-
-double total_volume(const TetMesh& mesh) {
-    double sum = 0.0;
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-        sum += signed_volume(mesh, static_cast<CellId>(t));
-    return sum;
-}
 
 // Two triangles for each quadrilateral on the surface of the block.
 std::size_t surface_triangles(const GridDimensions& grid) {

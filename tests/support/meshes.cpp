@@ -47,6 +47,12 @@ TetMesh delaunay_mesh(int points, std::uint64_t seed) {
     return tetrahedralize(complex);
 }
 
+double total_volume(const TetMesh& mesh) {
+    double sum = 0.0;
+    for (CellId cell = 0; cell < mesh.tets.size(); ++cell) sum += signed_volume(mesh, cell);
+    return sum;
+}
+
 ScalarField point_field(const TetMesh& mesh, const std::function<double(const glm::dvec3&)>& f) {
     ScalarField field{"f", FieldLocation::points, {}};
     for (const glm::dvec3& p : mesh.points) field.values.push_back(f(p));

@@ -24,6 +24,9 @@ TetMesh grid_mesh(int n, double jitter = 0.0, std::uint64_t seed = 1);
 // and acyclic from every eye (Edelsbrunner 1990). About 6.5 cells per point. Throws Error where there is no mesher.
 TetMesh delaunay_mesh(int points, std::uint64_t seed = 1);
 
+// The sum of the signed volumes of all cells.
+double total_volume(const TetMesh& mesh);
+
 // f at every point.
 ScalarField point_field(const TetMesh& mesh, const std::function<double(const glm::dvec3&)>& f);
 

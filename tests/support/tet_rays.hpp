@@ -7,10 +7,12 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <random>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "mesh/predicates.hpp"
 #include "mesh/tet_mesh.hpp"
 #include "project/tet_projection.hpp"
 
@@ -29,6 +31,49 @@ inline std::array<ScreenVertex, 4> screen(const Points& points, const std::array
 }
 
 inline double volume(const Points& p) { return std::abs(glm::dot(glm::cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0])) / 6; }
+
+// A cell at random in front of the eye, with a scalar at each corner.
+struct ScalarTet {
+    Points points;
+    std::array<double, 4> s;
+    double stretch;  // its box is 2 by 2 by 2·stretch
+};
+
+// Up to 20 times longer or shorter along the view than across. None when it has less than a thousandth of its box: the judge
+// below rounds more in slivers.
+inline std::optional<ScalarTet> random_tet(std::mt19937_64& random) {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    ScalarTet tet{};
+    tet.stretch = std::pow(20.0, unit(random));
+    for (auto& p : tet.points) p = {unit(random), unit(random), 1.2 + (1 + unit(random)) * tet.stretch};
+    if (volume(tet.points) < 1e-3 * tet.stretch) return std::nullopt;
+    tet.s = {unit(random), unit(random), unit(random), unit(random)};
+    return tet;
+}
+
+// Corners on a grid of 5³ points: every degenerate case comes up often.
+inline Points coarse_tet(std::mt19937_64& random) {
+    std::uniform_int_distribution<int> coarse(0, 4);
+    Points points;
+    for (auto& p : points) p = glm::dvec3(coarse(random), coarse(random), coarse(random));
+    return points;
+}
+
+// Weights of a triangle's corners, positive, of sum 1; no corner gets less than `least` of another.
+inline std::array<double, 3> random_weights(std::mt19937_64& random, double least) {
+    std::uniform_real_distribution<double> share(least, 1);
+    std::array<double, 3> w{share(random), share(random), share(random)};
+    const double sum = w[0] + w[1] + w[2];
+    for (double& x : w) x /= sum;
+    return w;
+}
+
+// The area of triangle t of a cell on the screen: a ProjectedTet or a Silhouette.
+template <class CellOnScreen>
+double area(const CellOnScreen& cell, std::size_t t) {
+    const auto& [a, b, c] = cell.triangles[t];
+    return 0.5 * std::abs(doubled_area(cell.vertices[a].position, cell.vertices[b].position, cell.vertices[c].position));
+}
 
 struct Segment {
     double front, back, s_front, s_back;  // depths along the ray's z, scalars
