@@ -33,7 +33,7 @@ double contact_tolerance(double edge, double rounding);
 
 // `faces`: the boundary faces of `mesh`. places: #P, the lowest id of the points at the place of each point. Quadrangles
 // that are not planar and cut along different diagonals are found while the diagonals pass within a quarter of their length.
-// O(n log n) in the number of faces, on all cores.
+// Faces smaller than 1e-70 or larger than 1e70 are passed over. O(n log n) in the number of faces, on all cores.
 FaceContacts find_face_contacts(const TetMesh& mesh, std::span<const BoundaryFace> faces, std::span<const VertexId> places);
 
 }  // namespace cellproj

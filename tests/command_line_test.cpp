@@ -145,6 +145,45 @@ TEST_F(CommandLine, CheckTellsGoodFromBad) {
     EXPECT_NE(bad.text.find("overused faces"), std::string::npos) << bad.text;
 }
 
+// Two boxes with points of their own, the second against the lower half of the first one's side.
+TEST_F(CommandLine, CheckNamesHangingPointsByIdAndPlace) {
+    write("halves.vtk", "# vtk DataFile Version 3.0\nhalves\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 16 double\n"
+                        "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\n"
+                        "1 0 0 2 0 0 2 1 0 1 1 0 1 0 0.5 2 0 0.5 2 1 0.5 1 1 0.5\n"
+                        "CELLS 2 18\n8 0 1 2 3 4 5 6 7\n8 8 9 10 11 12 13 14 15\nCELL_TYPES 2\n12\n12\n");
+    const Outcome outcome = run("check halves.vtk");
+    EXPECT_EQ(outcome.code, 1);
+    for (const char* words : {"hanging points         2:", "point 12 at (1, 0, 0.5)", "point 15 at (1, 1, 0.5)"}) {
+        EXPECT_NE(outcome.text.find(words), std::string::npos) << "no \"" << words << "\" in:\n" << outcome.text;
+    }
+    const auto hanging = nlohmann::json::parse(run("check halves.vtk --json").text).at("hanging_points");
+    EXPECT_EQ(hanging, nlohmann::json::parse(R"({"count": 2, "of": "points", "first": [12, 15], "at": [[1,0,0.5],[1,1,0.5]]})"));
+}
+
+// Cells are told by their number in the file, not by that of a tetrahedron of theirs.
+TEST_F(CommandLine, CheckNamesCellsOfTheFile) {
+    write("twice.vtk", "# vtk DataFile Version 3.0\ntwice\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 16 double\n"
+                       "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\n"
+                       "5 0 0 6 0 0 6 1 0 5 1 0 5 0 1 6 0 1 6 1 1 5 1 1\n"
+                       "CELLS 3 27\n8 0 1 2 3 4 5 6 7\n8 8 9 10 11 12 13 14 15\n8 8 9 10 11 12 13 14 15\nCELL_TYPES 3\n12\n12\n12\n");
+    const auto json = nlohmann::json::parse(run("check twice.vtk --json").text);
+    EXPECT_EQ(json.at("faithful"), false);
+    ASSERT_FALSE(json.at("overlapping_cells").at("first").empty());
+    EXPECT_EQ(json.at("overlapping_cells").at("first").at(0), 1);
+    EXPECT_GT(json.at("overlapping_cells").at("at").at(0).at(0), 5.0);
+}
+
+TEST_F(CommandLine, InfoSuggestsAFieldThatVaries) {
+    write("marked.vtk", "# vtk DataFile Version 3.0\nmarked\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n"
+                        "0 0 0 1 0 0 0 1 0 0 0 1 9 9 9\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 5\n"
+                        "SCALARS id double 1\nLOOKUP_TABLE default\n1 2 3 4 5\nSCALARS T double 1\nLOOKUP_TABLE default\n"
+                        "300 300 300 300 300\nSCALARS p double 1\nLOOKUP_TABLE default\n0.5 1 1.5 2 2\n");
+    const std::string text = run("info marked.vtk").text;
+    for (const char* words : {"5 (1 of them in no volume cell)", "300 .. 300, constant", "volume      0.166667", "--field p\n"}) {
+        EXPECT_NE(text.find(words), std::string::npos) << "no \"" << words << "\" in:\n" << text;
+    }
+}
+
 TEST_F(CommandLine, CellFieldsConstantOrAveraged) {
     EXPECT_EQ(run("render cube.vtk -o a.exr --size 20x20 --field rank --cell-values averaged").code, 0);
     EXPECT_EQ(run("render cube.vtk -o b.exr --size 20x20 --field U:x").code, 0);

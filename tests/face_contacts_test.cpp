@@ -192,6 +192,8 @@ TEST(FaceContacts, BoxesThatTouchInParts) {
 TEST(FaceContacts, GapsAndThinPlatesAreNoContacts) {
     const TetMesh box = grid_mesh(2);
     expect(together(box, moved(box, {1 + 1e-4, 0, 0})), {});
+    const Map opened = [](const glm::dvec3& p) { return p + glm::dvec3(1e-3 * p.z, 0, 0); };  // a wedge of air between them
+    expect(together(box, mapped(moved(box, beside), opened)), {});
     expect(mapped(grid_mesh(2), [](const glm::dvec3& p) { return p * glm::dvec3(1, 1, 1e-5); }), {});
     expect(mapped(grid_mesh(2), [](const glm::dvec3& p) { return p * glm::dvec3(1, 1, 1e-12); }), {});
 }
