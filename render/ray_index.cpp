@@ -178,9 +178,13 @@ void RayIndex::visit_candidates(const ViewRay& ray, Visit visit) const {
         inverse[axis] = std::abs(d) > 1e-300 ? 1.0 / d : 1e300;  // no 0·infinity below
     }
     const auto meets_box = [&](const Box& box) {
-        const glm::dvec3 a = (box.low - ray.origin) * inverse, b = (box.high - ray.origin) * inverse;
-        const glm::dvec3 near = glm::min(a, b), far = glm::max(a, b);
-        return std::max({near.x, near.y, near.z, ray.start}) <= std::min({far.x, far.y, far.z});
+        double near = ray.start, far = std::numeric_limits<double>::infinity();
+        for (int axis = 0; axis < 3; ++axis) {
+            const double a = (box.low[axis] - ray.origin[axis]) * inverse[axis], b = (box.high[axis] - ray.origin[axis]) * inverse[axis];
+            near = std::max(near, std::min(a, b));
+            far = std::min(far, std::max(a, b));
+        }
+        return near <= far;
     };
     struct Node {
         int level;
@@ -205,15 +209,19 @@ void RayIndex::visit_candidates(const ViewRay& ray, Visit visit) const {
 }
 
 bool RayIndex::cross(const Frame& frame, const Cell& cell, Crossing& crossing) const {
-    const auto order = by_vertex(cell.vertices);
-    std::array<FramePoint, 4> p;
-    for (std::size_t i = 0; i < 4; ++i) p[i] = frame.see(points_[cell.vertices[order[i]]]);
-    const auto all = [&](auto holds) { return holds(p[0]) && holds(p[1]) && holds(p[2]) && holds(p[3]); };
-    if (all([](const FramePoint& q) { return q.u > 0; }) || all([](const FramePoint& q) { return q.u < 0; }) ||
-        all([](const FramePoint& q) { return q.v > 0; }) || all([](const FramePoint& q) { return q.v < 0; })) {
-        return false;
-    }
+    std::array<FramePoint, 4> seen;
+    for (std::size_t i = 0; i < 4; ++i) seen[i] = frame.see(points_[cell.vertices[i]]);
+    // All on one side of the ray, most often.
+    const auto extent = [&](double FramePoint::*x) {
+        return std::pair(std::min(std::min(seen[0].*x, seen[1].*x), std::min(seen[2].*x, seen[3].*x)),
+                         std::max(std::max(seen[0].*x, seen[1].*x), std::max(seen[2].*x, seen[3].*x)));
+    };
+    const auto [u_low, u_high] = extent(&FramePoint::u);
+    const auto [v_low, v_high] = extent(&FramePoint::v);
+    if (u_low > 0 || u_high < 0 || v_low > 0 || v_high < 0) return false;
 
+    const auto order = by_vertex(cell.vertices);
+    const std::array<FramePoint, 4> p{seen[order[0]], seen[order[1]], seen[order[2]], seen[order[3]]};
     double product[4][4];
     int sides[4][4];
     for (std::size_t i = 0; i < 4; ++i) {
