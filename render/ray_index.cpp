@@ -86,7 +86,9 @@ struct RayIndex::Frame {
 
     explicit Frame(const ViewRay& ray) : origin(ray.origin), z(ray.direction), start(ray.start) {
         const glm::dvec3 a = glm::abs(z);
-        const glm::dvec3 least = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0) : a.y <= a.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+        const glm::dvec3 least = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
+                                 : a.y <= a.z             ? glm::dvec3(0, 1, 0)
+                                                          : glm::dvec3(0, 0, 1);
         x = glm::normalize(glm::cross(z, least));
         y = glm::cross(z, x);
     }
@@ -103,16 +105,19 @@ RayIndex::RayIndex(const TetMesh& mesh) {
     middle_ = box.center();
     const double size = box.diagonal() > 0 ? box.diagonal() : 1.0;
     points_.reserve(mesh.points.size());
-    for (const glm::dvec3& p : mesh.points) points_.push_back(p - middle_);
+    for (const glm::dvec3& p : mesh.points)
+        points_.push_back(p - middle_);
 
     const std::size_t n = mesh.tets.size();
-    while ((n >> levels_) >= leaf_cells) ++levels_;
+    while ((n >> levels_) >= leaf_cells)
+        ++levels_;
     std::vector<Site> sites(n);
     using Range = oneapi::tbb::blocked_range<std::size_t>;
     oneapi::tbb::parallel_for(Range(0, n, 4096), [&](const Range& range) {
         for (std::size_t c = range.begin(); c != range.end(); ++c) {
             glm::dvec3 center(0);
-            for (const VertexId v : mesh.tets[c]) center += points_[v] * (0.25 / size);
+            for (const VertexId v : mesh.tets[c])
+                center += points_[v] * (0.25 / size);
             sites[c] = {glm::vec3(center), static_cast<CellId>(c)};
         }
     });
@@ -180,7 +185,8 @@ void RayIndex::visit_candidates(const ViewRay& ray, Visit visit) const {
     const auto meets_box = [&](const Box& box) {
         double near = ray.start, far = std::numeric_limits<double>::infinity();
         for (int axis = 0; axis < 3; ++axis) {
-            const double a = (box.low[axis] - ray.origin[axis]) * inverse[axis], b = (box.high[axis] - ray.origin[axis]) * inverse[axis];
+            const double a = (box.low[axis] - ray.origin[axis]) * inverse[axis],
+                         b = (box.high[axis] - ray.origin[axis]) * inverse[axis];
             near = std::max(near, std::min(a, b));
             far = std::min(far, std::max(a, b));
         }
@@ -210,7 +216,8 @@ void RayIndex::visit_candidates(const ViewRay& ray, Visit visit) const {
 
 bool RayIndex::cross(const Frame& frame, const Cell& cell, Crossing& crossing) const {
     std::array<FramePoint, 4> seen;
-    for (std::size_t i = 0; i < 4; ++i) seen[i] = frame.see(points_[cell.vertices[i]]);
+    for (std::size_t i = 0; i < 4; ++i)
+        seen[i] = frame.see(points_[cell.vertices[i]]);
     // All on one side of the ray, most often.
     const auto extent = [&](double FramePoint::*x) {
         return std::pair(std::min(std::min(seen[0].*x, seen[1].*x), std::min(seen[2].*x, seen[3].*x)),
@@ -252,7 +259,8 @@ bool RayIndex::cross(const Frame& frame, const Cell& cell, Crossing& crossing) c
     crossing = {cell.id, hits[0].t, hits[1].t, hits[0].weights, hits[1].weights};
     if (crossing.enter < frame.start) {
         const double share = (frame.start - crossing.enter) / crossing.length();
-        for (std::size_t i = 0; i < 4; ++i) crossing.at_enter[i] += share * (crossing.at_leave[i] - crossing.at_enter[i]);
+        for (std::size_t i = 0; i < 4; ++i)
+            crossing.at_enter[i] += share * (crossing.at_leave[i] - crossing.at_enter[i]);
         crossing.enter = frame.start;
     }
     return true;

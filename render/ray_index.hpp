@@ -3,12 +3,13 @@
 // Which cells a ray crosses, and where: a tree of boxes over the cells, each candidate tested by itself. Knows neither
 // neighbours nor an order of cells, so that it can judge those who do.
 //
-// Each vertex is seen in the frame of the ray: u, v across it and t along it, by one formula. From there on all decisions are exact for
-// these rounded positions: the sign of a difference of two products, by Kahan's method (Jeannerod, Louvet, Muller, *Further Analysis of
-// Kahan's Algorithm for the Accurate Computation of 2×2 Determinants*, Math. Comp. 82, 2013), is right. A ray through a vertex, an
-// edge or along a face is decided as if it were moved by (ε, ε²) in (u, v), with no ε in any result (Edelsbrunner and Mücke,
-// *Simulation of Simplicity*, ACM TOG 9(1), 1990). So a ray crosses two faces of a cell or none, and the cells of a
-// conformal mesh follow each other on it without gap or overlap: t on a shared face is the same number for both its cells.
+// Each vertex is seen in the frame of the ray: u, v across it and t along it, by one formula. From there on all decisions are
+// exact for these rounded positions: the sign of a difference of two products, by Kahan's method (Jeannerod, Louvet, Muller,
+// *Further Analysis of Kahan's Algorithm for the Accurate Computation of 2×2 Determinants*, Math. Comp. 82, 2013), is right. A
+// ray through a vertex, an edge or along a face is decided as if it were moved by (ε, ε²) in (u, v), with no ε in any result
+// (Edelsbrunner and Mücke, *Simulation of Simplicity*, ACM TOG 9(1), 1990). So a ray crosses two faces of a cell or none, and
+// the cells of a conformal mesh follow each other on it without gap or overlap: t on a shared face is the same number for both
+// its cells.
 #pragma once
 
 #include <array>
@@ -32,13 +33,14 @@ struct ViewRay {
 // The part of a ray inside one cell.
 struct Crossing {
     CellId cell;
-    double enter, leave;                     // t, enter < leave [mesh units]
+    double enter, leave;                       // t, enter < leave [mesh units]
     std::array<double, 4> at_enter, at_leave;  // weights of the cell's four vertices, 0..1, with sum 1
 
     double length() const { return leave - enter; }
 };
 
-// Memory: 44 to 68 bytes per cell and 24 per point, 16 more per cell while it is built. The mesh is not kept. Any number of threads may ask at once.
+// Memory: 44 to 68 bytes per cell and 24 per point, 16 more per cell while it is built. The mesh is not kept. Any number of
+// threads may ask at once.
 class RayIndex {
 public:
     // Parallel; the same for any number of threads. Throws Error (data) for a mesh that `validate` refuses.
@@ -51,10 +53,10 @@ public:
     // The same for a ray in mesh coordinates, from its origin on or as a whole line.
     ViewRay ray(const ScreenTransform::Ray& ray, bool from_origin) const;
 
-    // All cells along the ray, ordered by their middles on it, then by cell. Cells that it crosses with no length (flat ones) are left
-    // out; a cell that holds the start begins there. Without overlaps this is the order from front to back. Rounding of the
-    // vertices in the frame and of t, about 1e-16 of the mesh's size, may make neighbours overlap by as much where cells are
-    // thinner than that or the ray runs along their edges: do not judge an order by crossings as short as that.
+    // All cells along the ray, ordered by their middles on it, then by cell. Cells that it crosses with no length (flat ones)
+    // are left out; a cell that holds the start begins there. Without overlaps this is the order from front to back. Rounding
+    // of the vertices in the frame and of t, about 1e-16 of the mesh's size, may make neighbours overlap by as much where
+    // cells are thinner than that or the ray runs along their edges: do not judge an order by crossings as short as that.
     std::vector<Crossing> cells_along(const ViewRay& ray) const;
     // Whether there is any, at a fraction of the cost.
     bool meets(const ViewRay& ray) const;

@@ -20,7 +20,8 @@ constexpr std::array<GaussPair, 4> eight_points{{{0.09171732124782490, 0.1813418
                                                  {0.26276620495816450, 0.15685332293894364},
                                                  {0.39833323870681336, 0.11119051722668724},
                                                  {0.48014492824876812, 0.05061426814518813}}};
-constexpr std::array<GaussPair, 2> four_points{{{0.16999052179242813, 0.32607257743127307}, {0.43056815579702629, 0.17392742256872693}}};
+constexpr std::array<GaussPair, 2> four_points{
+    {{0.16999052179242813, 0.32607257743127307}, {0.43056815579702629, 0.17392742256872693}}};
 
 // e^(−D) times a quadratic, relative error: D⁷/7! · 4e-10 for eight points, D³/3! · 2e-5 for four (the remainder f⁽²ⁿ⁾ of the
 // first power of D that the rule does not integrate exactly; D itself is quadratic). 5e-16 and 2e-13.
@@ -58,8 +59,12 @@ RayLight::Walk::Walk(const TransferFunction& transfer, const ScalarEnds& ends)
     assert(std::isfinite(ends.front) && std::isfinite(ends.back));
     const auto& cuts = transfer.breakpoints();
     // A scalar on a breakpoint begins in the piece that it is about to walk through, and ends in the one it came from.
-    const auto behind = [&](double s) { return static_cast<std::size_t>(std::upper_bound(cuts.begin(), cuts.end(), s) - cuts.begin()); };
-    const auto before = [&](double s) { return static_cast<std::size_t>(std::lower_bound(cuts.begin(), cuts.end(), s) - cuts.begin()); };
+    const auto behind = [&](double s) {
+        return static_cast<std::size_t>(std::upper_bound(cuts.begin(), cuts.end(), s) - cuts.begin());
+    };
+    const auto before = [&](double s) {
+        return static_cast<std::size_t>(std::lower_bound(cuts.begin(), cuts.end(), s) - cuts.begin());
+    };
     const bool falling = ends.back < ends.front;
     piece_ = falling ? before(ends.front) : behind(ends.front);
     last_ = falling ? behind(ends.back) : ends.front == ends.back ? piece_ : before(ends.back);
@@ -79,11 +84,15 @@ double RayLight::Walk::advance(double share, OpticalModel model, Stretch& sum) {
     const LinearPiece& piece = transfer_->pieces()[piece_];
     const bool leaves = share >= next_cut();
     // A cut of another medium: rounding must not carry this one out of its piece.
-    const double end = leaves ? exit_scalar() : std::clamp(ends_.front * (1.0 - share) + ends_.back * share, piece.begin, piece.end);
+    const double end =
+        leaves ? exit_scalar() : std::clamp(ends_.front * (1.0 - share) + ends_.back * share, piece.begin, piece.end);
     const bool constant = ends_.front == ends_.back;  // on a breakpoint, the function's own value counts
-    const double tau[2] = {constant ? transfer_->extinction(end) : piece.extinction(scalar_), constant ? transfer_->extinction(end) : piece.extinction(end)};
-    const glm::dvec3 color[2] = {constant ? transfer_->color(end) : piece.color(scalar_), constant ? transfer_->color(end) : piece.color(end)};
-    for (int side : {0, 1}) sum.extinction[side] += tau[side];
+    const double tau[2] = {constant ? transfer_->extinction(end) : piece.extinction(scalar_),
+                           constant ? transfer_->extinction(end) : piece.extinction(end)};
+    const glm::dvec3 color[2] = {constant ? transfer_->color(end) : piece.color(scalar_),
+                                 constant ? transfer_->color(end) : piece.color(end)};
+    for (int side : {0, 1})
+        sum.extinction[side] += tau[side];
     if (model == OpticalModel::density) {
         sum.emission[0] += color[0] * tau[0];
         sum.emission[1] += 0.5 * (color[0] * tau[1] + color[1] * tau[0]);
@@ -106,14 +115,17 @@ void RayLight::add(std::span<const ScalarEnds> media, double length) {
     assert(length >= 0 && std::isfinite(length));
     if (media.empty() || length == 0 || opaque()) return;
     walks_.clear();
-    for (const ScalarEnds& ends : media) walks_.emplace_back(*transfer_, ends);
+    for (const ScalarEnds& ends : media)
+        walks_.emplace_back(*transfer_, ends);
     double begin = 0;
     while (std::any_of(walks_.begin(), walks_.end(), [](const Walk& walk) { return !walk.done(); })) {
         double end = 1;
-        for (const Walk& walk : walks_) end = std::min(end, walk.next_cut());
+        for (const Walk& walk : walks_)
+            end = std::min(end, walk.next_cut());
         Stretch stretch{};
         double walked = 0;
-        for (Walk& walk : walks_) walked = walk.advance(end, transfer_->model(), stretch);
+        for (Walk& walk : walks_)
+            walked = walk.advance(end, transfer_->model(), stretch);
         // The scalars tell the share of a single medium with all digits, even between nodes one ulp apart.
         stretch.length = length * (walks_.size() == 1 ? walked : end - begin);
         integrate(stretch);
@@ -126,7 +138,8 @@ void RayLight::integrate(const Stretch& stretch) {
     const double transmittance = std::exp(-depth_);
     const auto& q = stretch.emission;
     const double brightest = std::max({largest(q[0]), largest(q[1]), largest(q[2])});
-    const bool dark = brightest == 0 || opaque() || (depth_ > dark_depth && transmittance * brightest * stretch.length < negligible);
+    const bool dark =
+        brightest == 0 || opaque() || (depth_ > dark_depth && transmittance * brightest * stretch.length < negligible);
     if (!dark && depth > eight_points_depth) {
         const double tau = 0.5 * (stretch.extinction[0] + stretch.extinction[1]);
         const glm::dvec3 a = 0.5 * (q[0] + q[1]), b = 0.5 * (q[1] + q[2]), middle = 0.5 * (a + b);  // de Casteljau

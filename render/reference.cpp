@@ -38,7 +38,8 @@ void check_field(const Scene& scene) {
 
 void check_pixel(PixelId pixel, int width, int height) {
     if (pixel.x >= 0 && pixel.x < width && pixel.y >= 0 && pixel.y < height) return;
-    throw Error({ErrorKind::option, "pixel", "one of a picture of " + std::to_string(width) + "x" + std::to_string(height) + " pixels",
+    throw Error({ErrorKind::option, "pixel",
+                 "one of a picture of " + std::to_string(width) + "x" + std::to_string(height) + " pixels",
                  "(" + std::to_string(pixel.x) + ", " + std::to_string(pixel.y) + ")", "give column and row, from 0"});
 }
 
@@ -46,7 +47,8 @@ glm::dvec2 center(PixelId pixel) { return {pixel.x + 0.5, pixel.y + 0.5}; }
 
 double interpolate(const std::array<double, 4>& values, const std::array<double, 4>& weights) {
     double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) sum += values[i] * weights[i];
+    for (std::size_t i = 0; i < 4; ++i)
+        sum += values[i] * weights[i];
     // Where all are equal, or nearly, rounding must not make another value of them.
     return std::clamp(sum, std::ranges::min(values), std::ranges::max(values));
 }
@@ -70,9 +72,11 @@ std::vector<Segment> segments(const Scene& scene, const std::vector<Crossing>& c
     result.reserve(crossings.size());
     for (const Crossing& crossing : crossings) {
         std::array<double, 4> values;
-        for (int corner = 0; corner < 4; ++corner) values[static_cast<std::size_t>(corner)] = scene.field->at(*scene.mesh, crossing.cell, corner);
+        for (int corner = 0; corner < 4; ++corner)
+            values[static_cast<std::size_t>(corner)] = scene.field->at(*scene.mesh, crossing.cell, corner);
         if (!std::ranges::all_of(values, [](double s) { return std::isfinite(s); })) continue;
-        result.push_back({crossing.enter, crossing.leave, {interpolate(values, crossing.at_enter), interpolate(values, crossing.at_leave)}});
+        result.push_back(
+            {crossing.enter, crossing.leave, {interpolate(values, crossing.at_enter), interpolate(values, crossing.at_leave)}});
     }
     std::sort(result.begin(), result.end(), [](const Segment& a, const Segment& b) { return a.enter < b.enter; });
     return result;
@@ -82,7 +86,8 @@ std::vector<Segment> segments(const Scene& scene, const std::vector<Crossing>& c
 std::uint64_t morton(PixelId pixel) {
     std::uint64_t code = 0;
     for (int bit = 0; bit < 16; ++bit) {
-        code |= (static_cast<std::uint64_t>(pixel.x) >> bit & 1U) << (2 * bit) | (static_cast<std::uint64_t>(pixel.y) >> bit & 1U) << (2 * bit + 1);
+        code |= (static_cast<std::uint64_t>(pixel.x) >> bit & 1U) << (2 * bit) |
+                (static_cast<std::uint64_t>(pixel.y) >> bit & 1U) << (2 * bit + 1);
     }
     return code;
 }
@@ -94,7 +99,9 @@ std::vector<PixelId> candidates(ImageSize size, std::mt19937_64& random) {
     std::vector<PixelId> pixels;
     for (int y = 0; y < size.height; y += k) {
         for (int x = 0; x < size.width; x += k) {
-            const auto offset = [&](int room) { return static_cast<int>(random() % static_cast<std::uint64_t>(std::min(k, room))); };
+            const auto offset = [&](int room) {
+                return static_cast<int>(random() % static_cast<std::uint64_t>(std::min(k, room)));
+            };
             const int dx = offset(size.width - x), dy = offset(size.height - y);
             pixels.push_back({x + dx, y + dy});
         }
@@ -144,7 +151,8 @@ Light Reference::light(const ViewRay& ray) const {
     const std::vector<Segment> along = segments(scene_, index_->cells_along(ray));
     std::vector<double> bounds;
     bounds.reserve(2 * along.size());
-    for (const Segment& segment : along) bounds.insert(bounds.end(), {segment.enter, segment.leave});
+    for (const Segment& segment : along)
+        bounds.insert(bounds.end(), {segment.enter, segment.leave});
     std::sort(bounds.begin(), bounds.end());
     bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
 
@@ -156,18 +164,22 @@ Light Reference::light(const ViewRay& ray) const {
     for (std::size_t i = 0; i + 1 < bounds.size() && !light.opaque(); ++i) {
         const double begin = bounds[i], end = bounds[i + 1];
         std::erase_if(here, [&](const Segment& segment) { return segment.leave <= begin; });
-        while (next != along.end() && next->enter <= begin) here.push_back(*next++);
+        while (next != along.end() && next->enter <= begin)
+            here.push_back(*next++);
         media.clear();
-        for (const Segment& segment : here) media.push_back({segment.at(begin), segment.at(end)});
+        for (const Segment& segment : here)
+            media.push_back({segment.at(begin), segment.at(end)});
         light.add(media, end - begin);
     }
     return light.light();
 }
 
-std::vector<PixelTruth> Reference::pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels, double slack) const {
+std::vector<PixelTruth> Reference::pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels,
+                                          double slack) const {
     validate(camera, "camera");
     validate(size, "size");
-    for (const PixelId& pixel : pixels) check_pixel(pixel, size.width, size.height);
+    for (const PixelId& pixel : pixels)
+        check_pixel(pixel, size.width, size.height);
     std::vector<PixelTruth> truths(pixels.size());
     const auto look = [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -199,7 +211,8 @@ std::vector<PixelId> Reference::sample(const Camera& camera, ImageSize size, std
     const std::vector<PixelId> tried = candidates(size, random);
     std::vector<std::uint8_t> meets(tried.size());
     oneapi::tbb::parallel_for(Range(0, tried.size(), 64), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) meets[i] = index_->meets(index_->ray(camera, size, center(tried[i])));
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            meets[i] = index_->meets(index_->ray(camera, size, center(tried[i])));
     });
     std::vector<PixelId> seen;
     for (std::size_t i = 0; i < tried.size(); ++i) {
@@ -216,7 +229,8 @@ std::vector<PixelId> Reference::sample(const Camera& camera, ImageSize size, std
     return drawn;
 }
 
-std::vector<PixelTruth> reference_pixels(const Scene& scene, const Camera& camera, ImageSize size, std::span<const PixelId> pixels) {
+std::vector<PixelTruth> reference_pixels(const Scene& scene, const Camera& camera, ImageSize size,
+                                         std::span<const PixelId> pixels) {
     return Reference(scene).pixels(camera, size, pixels);
 }
 
@@ -224,7 +238,8 @@ std::vector<PixelId> all_pixels(ImageSize size) {
     std::vector<PixelId> pixels;
     pixels.reserve(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
     for (int y = 0; y < size.height; ++y) {
-        for (int x = 0; x < size.width; ++x) pixels.push_back({x, y});
+        for (int x = 0; x < size.width; ++x)
+            pixels.push_back({x, y});
     }
     return pixels;
 }
@@ -244,7 +259,8 @@ ImageError compare(const Image& image, std::span<const PixelTruth> truths) {
         check_pixel(truth.pixel, image.width, image.height);
         const glm::vec4& found = image.at(truth.pixel.x, truth.pixel.y);
         std::array<double, 3> channels;
-        for (int k = 0; k < 3; ++k) channels[static_cast<std::size_t>(k)] = outside(found[k], truth.low.color[k], truth.high.color[k]);
+        for (int k = 0; k < 3; ++k)
+            channels[static_cast<std::size_t>(k)] = outside(found[k], truth.low.color[k], truth.high.color[k]);
         color.add(channels);
         opacity.add(std::array{outside(found.w, truth.low.opacity, truth.high.opacity)});
     }

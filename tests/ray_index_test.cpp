@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cells along a ray: against the four planes of every cell, against closed forms, and where the ray meets vertices, edges and faces.
+// Cells along a ray: against the four planes of every cell, against closed forms, and where the ray meets vertices, edges and
+// faces.
 #include "render/ray_index.hpp"
 
 #include <gtest/gtest.h>
@@ -23,13 +24,18 @@ namespace {
 using testing_support::grid_mesh;
 using testing_support::unit_tet;
 
-ScreenTransform::Ray through(const glm::dvec3& point, const glm::dvec3& direction) { return {point, glm::normalize(direction)}; }
+ScreenTransform::Ray through(const glm::dvec3& point, const glm::dvec3& direction) {
+    return {point, glm::normalize(direction)};
+}
 
-std::vector<Crossing> along(const RayIndex& index, const ScreenTransform::Ray& ray) { return index.cells_along(index.ray(ray, false)); }
+std::vector<Crossing> along(const RayIndex& index, const ScreenTransform::Ray& ray) {
+    return index.cells_along(index.ray(ray, false));
+}
 
 double total(const std::vector<Crossing>& crossings) {
     double sum = 0;
-    for (const Crossing& c : crossings) sum += c.length();
+    for (const Crossing& c : crossings)
+        sum += c.length();
     return sum;
 }
 
@@ -59,7 +65,8 @@ double length_inside(const TetMesh& mesh, const std::array<VertexId, 4>& tet, co
 }
 
 int shared_vertices(const std::array<VertexId, 4>& a, const std::array<VertexId, 4>& b) {
-    return static_cast<int>(std::count_if(a.begin(), a.end(), [&](VertexId v) { return std::find(b.begin(), b.end(), v) != b.end(); }));
+    return static_cast<int>(
+        std::count_if(a.begin(), a.end(), [&](VertexId v) { return std::find(b.begin(), b.end(), v) != b.end(); }));
 }
 
 // In a conformal convex mesh each cell begins in the very number at which the one before it ends, behind a common face.
@@ -89,7 +96,8 @@ TEST(RayIndex, FindsWhatEveryCellSaysForItself) {
             lengths[c.cell] = c.length();
         }
         // 1e-13: rounding of 1e-16, times the slant of the flattest face that a random ray meets here.
-        for (std::size_t c = 0; c < mesh.tets.size(); ++c) EXPECT_NEAR(lengths[c], length_inside(mesh, mesh.tets[c], ray), 1e-13);
+        for (std::size_t c = 0; c < mesh.tets.size(); ++c)
+            EXPECT_NEAR(lengths[c], length_inside(mesh, mesh.tets[c], ray), 1e-13);
         expect_chain(mesh, crossings);
         EXPECT_NEAR(total(crossings), chord(ray), 1e-14);
         EXPECT_EQ(index.meets(index.ray(ray, false)), !crossings.empty());
@@ -120,18 +128,21 @@ TEST(RayIndex, WeightsNameThePoint) {
 TEST(RayIndex, ThroughVerticesEdgesAndFaces) {
     const TetMesh mesh = grid_mesh(4);
     const RayIndex index(mesh);
-    const std::vector<glm::dvec3> directions{{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {1, 0, 1}, {0, 1, -1}, {1, 1, 1},
-                                             {1, -1, 1}, {-1, 1, 1}, {2, 1, 0}, {1, 2, -1}, {3, 1, 2},  {1, 1, 2}, {-1, -1, 1}};
+    const std::vector<glm::dvec3> directions{{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0},
+                                             {1, 0, 1}, {0, 1, -1}, {1, 1, 1}, {1, -1, 1}, {-1, 1, 1},
+                                             {2, 1, 0}, {1, 2, -1}, {3, 1, 2}, {1, 1, 2},  {-1, -1, 1}};
     // A vertex, the middle of an edge, of a face's diagonal and of a box; points in faces; one in general position.
-    const std::vector<glm::dvec3> points{{0.5, 0.5, 0.5},   {0.25, 0.5, 0.75}, {0.375, 0.5, 0.5}, {0.375, 0.375, 0.5}, {0.375, 0.375, 0.375},
-                                         {0.5, 0.30, 0.60}, {0.30, 0.5, 0.41}, {0.31, 0.31, 0.5}, {0.31, 0.47, 0.62}};
+    const std::vector<glm::dvec3> points{{0.5, 0.5, 0.5},     {0.25, 0.5, 0.75},     {0.375, 0.5, 0.5},
+                                         {0.375, 0.375, 0.5}, {0.375, 0.375, 0.375}, {0.5, 0.30, 0.60},
+                                         {0.30, 0.5, 0.41},   {0.31, 0.31, 0.5},     {0.31, 0.47, 0.62}};
     for (const glm::dvec3& direction : directions) {
         for (const glm::dvec3& point : points) {
             const auto ray = through(point, direction);
             const auto crossings = along(index, ray);
             EXPECT_NEAR(total(crossings), chord(ray), 1e-14);
             // Vertices on the ray are rounded, so cells around it may be met with lengths of an ulp or two.
-            for (std::size_t i = 0; i + 1 < crossings.size(); ++i) EXPECT_NEAR(crossings[i].leave, crossings[i + 1].enter, 4e-16);
+            for (std::size_t i = 0; i + 1 < crossings.size(); ++i)
+                EXPECT_NEAR(crossings[i].leave, crossings[i + 1].enter, 4e-16);
             EXPECT_NEAR(total(along(index, through(point, -direction))), chord(ray), 1e-14);
         }
     }
@@ -140,7 +151,8 @@ TEST(RayIndex, ThroughVerticesEdgesAndFaces) {
 // Along the boundary a ray is inside or outside, as a whole.
 TEST(RayIndex, AlongTheBoundary) {
     const RayIndex index(grid_mesh(4));
-    for (const glm::dvec3& point : {glm::dvec3(0, 0.3, 0.3), glm::dvec3(1, 0.3, 0.3), glm::dvec3(0, 0.25, 0.5), glm::dvec3(0, 0, 0.5), glm::dvec3(1, 1, 0.5)}) {
+    for (const glm::dvec3& point : {glm::dvec3(0, 0.3, 0.3), glm::dvec3(1, 0.3, 0.3), glm::dvec3(0, 0.25, 0.5),
+                                    glm::dvec3(0, 0, 0.5), glm::dvec3(1, 1, 0.5)}) {
         for (const glm::dvec3& direction : {glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)}) {
             const double length = total(along(index, through(point, direction)));
             EXPECT_TRUE(std::abs(length) < 1e-15 || std::abs(length - 1) < 1e-14) << length;
@@ -155,9 +167,11 @@ TEST(RayIndex, AnyNumberingAndOrientationIsTheSame) {
     std::iota(label.begin(), label.end(), 0U);
     std::shuffle(label.begin(), label.end(), random);
     TetMesh other = mesh;
-    for (std::size_t v = 0; v < label.size(); ++v) other.points[label[v]] = mesh.points[v];
+    for (std::size_t v = 0; v < label.size(); ++v)
+        other.points[label[v]] = mesh.points[v];
     for (auto& tet : other.tets) {
-        for (auto& v : tet) v = label[v];
+        for (auto& v : tet)
+            v = label[v];
         std::shuffle(tet.begin(), tet.end(), random);
     }
     const RayIndex a(mesh), b(other);
@@ -175,15 +189,19 @@ TEST(RayIndex, AnyNumberingAndOrientationIsTheSame) {
 // The points of a mesh of size 1e-3 near 1e6 are multiples of 1e-10. What they say is found to 1e-16 of the size.
 TEST(RayIndex, SmallAndFarAway) {
     TetMesh near = grid_mesh(5, 0.2, 4);
-    for (auto& p : near.points) p *= 1e-3;
+    for (auto& p : near.points)
+        p *= 1e-3;
     TetMesh far = near;
-    for (auto& p : far.points) p += 1e6;
-    for (std::size_t v = 0; v < near.points.size(); ++v) near.points[v] = far.points[v] - 1e6;  // as far as they could be kept
+    for (auto& p : far.points)
+        p += 1e6;
+    for (std::size_t v = 0; v < near.points.size(); ++v)
+        near.points[v] = far.points[v] - 1e6;  // as far as they could be kept
     const RayIndex a(near), b(far);
     std::mt19937_64 random(12);
     for (int i = 0; i < 100; ++i) {
         auto ray = random_ray(random);
-        ray.origin = std::ldexp(1.0, -10) * glm::round(ray.origin * 1024.0) * glm::dvec3(std::ldexp(1.0, -10));  // multiples of 2⁻²⁰: exact near 1e6
+        ray.origin = std::ldexp(1.0, -10) * glm::round(ray.origin * 1024.0) *
+                     glm::dvec3(std::ldexp(1.0, -10));  // multiples of 2⁻²⁰: exact near 1e6
         auto shifted = ray;
         shifted.origin += 1e6;
         const auto x = along(a, ray), y = along(b, shifted);
@@ -200,7 +218,8 @@ TEST(RayIndex, ScalesWithTheMesh) {
     const RayIndex reference(mesh);
     for (const double scale : {1e-12, 1e-9, 1e9, 1e12}) {
         TetMesh scaled = mesh;
-        for (auto& p : scaled.points) p *= scale;
+        for (auto& p : scaled.points)
+            p *= scale;
         const RayIndex index(scaled);
         std::mt19937_64 random(13);
         for (int i = 0; i < 50; ++i) {
@@ -224,7 +243,8 @@ TEST(RayIndex, StartsAtTheEye) {
         EXPECT_NEAR(forward + backward, chord(ray), 1e-14);
         glm::dvec3 there(0);
         const TetMesh mesh = grid_mesh(3);
-        for (std::size_t k = 0; k < 4; ++k) there += crossings[0].at_enter[k] * mesh.points[mesh.tets[crossings[0].cell][k]];
+        for (std::size_t k = 0; k < 4; ++k)
+            there += crossings[0].at_enter[k] * mesh.points[mesh.tets[crossings[0].cell][k]];
         EXPECT_LT(glm::distance(there, eye), 1e-14);
     }
     EXPECT_TRUE(index.cells_along(index.ray(through({0.5, 0.5, 1.5}, {0, 0, 1}), true)).empty());
@@ -246,7 +266,8 @@ TEST(RayIndex, FlatNeedleAndPointCells) {
     for (int i = 0; i < 200; ++i) {
         const auto ray = random_ray(random);
         const auto crossings = along(index, ray);
-        for (const Crossing& c : crossings) EXPECT_TRUE(c.cell < whole || c.length() < 1e-15);
+        for (const Crossing& c : crossings)
+            EXPECT_TRUE(c.cell < whole || c.length() < 1e-15);
         EXPECT_NEAR(total(crossings), chord(ray), 1e-14);
     }
 
@@ -255,7 +276,8 @@ TEST(RayIndex, FlatNeedleAndPointCells) {
     needle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1e-13}};
     needle.tets = {{0, 1, 2, 3}};
     EXPECT_NEAR(total(along(RayIndex(needle), through({0.25, 0.25, 0}, {0, 0, 1}))), 0.5e-13, 1e-28);
-    EXPECT_NEAR(total(along(RayIndex(needle), through({0, 0.25, 0.5e-13}, {1, 0, 0}))), 0.25, 1e-3);  // the height is rounded, 1e-16 of 1e-13
+    EXPECT_NEAR(total(along(RayIndex(needle), through({0, 0.25, 0.5e-13}, {1, 0, 0}))), 0.25,
+                1e-3);  // the height is rounded, 1e-16 of 1e-13
 }
 
 TEST(RayIndex, OneCellAndNone) {

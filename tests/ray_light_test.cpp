@@ -27,7 +27,8 @@ Light light_of(const TransferFunction& transfer, const std::vector<ScalarEnds>& 
 }
 
 void expect_near(const Light& a, const Light& b, double tolerance, const std::string& what = "") {
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(a.color[k], b.color[k], tolerance) << what;
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(a.color[k], b.color[k], tolerance) << what;
     EXPECT_NEAR(a.opacity, b.opacity, tolerance) << what;
 }
 
@@ -42,7 +43,8 @@ TransferFunction rugged() {
 // ∫₀ˡ exp(−(a x + b x²/2)) dx, b > 0: extinction a at the front, a + b l at the back.
 double transmittance_integral(double a, double b, double l) {
     const double scale = std::sqrt(2 * b);
-    return std::sqrt(std::numbers::pi / (2 * b)) * std::exp(a * a / (2 * b)) * (std::erf((b * l + a) / scale) - std::erf(a / scale));
+    return std::sqrt(std::numbers::pi / (2 * b)) * std::exp(a * a / (2 * b)) *
+           (std::erf((b * l + a) / scale) - std::erf(a / scale));
 }
 
 TEST(RayLight, AConstantMediumIsBeersLaw) {
@@ -59,10 +61,12 @@ TEST(RayLight, AConstantMediumIsBeersLaw) {
 TEST(RayLight, ALinearRampIsAnErrorFunction) {
     for (const double steepness : {0.5, 3.0, 40.0}) {
         const double l = 2, a = 0.25, b = steepness;  // τ from a to a + b·l
-        const TransferFunction ramp(OpticalModel::density, {{0, {0.1, 0.9, 0.5}}, {1, {1.0, 0.2, 0.5}}}, {{0, a}, {1, a + b * l}});
+        const TransferFunction ramp(OpticalModel::density, {{0, {0.1, 0.9, 0.5}}, {1, {1.0, 0.2, 0.5}}},
+                                    {{0, a}, {1, a + b * l}});
         const double transmittance = std::exp(-(a * l + b * l * l / 2)), integral = transmittance_integral(a, b, l);
         const glm::dvec3 front(0.1, 0.9, 0.5), back(1.0, 0.2, 0.5);
-        expect_near(light_of(ramp, {{0, 1}}, l), {front - transmittance * back + integral / l * (back - front), 1 - transmittance}, stated);
+        expect_near(light_of(ramp, {{0, 1}}, l),
+                    {front - transmittance * back + integral / l * (back - front), 1 - transmittance}, stated);
 
         const TransferFunction glow(OpticalModel::emitter, {{0, {0.3, 0.2, 0.1}}}, {{0, a}, {1, a + b * l}});
         expect_near(light_of(glow, {{0, 1}}, l), {integral * glm::dvec3(0.3, 0.2, 0.1), 1 - transmittance}, stated);
@@ -89,7 +93,8 @@ TEST(RayLight, PiecesOfAnIntervalAreTheWhole) {
         const ScalarEnds a{any(random), any(random)}, b{any(random), any(random)};
         const double length = 6 * any(random);
         std::vector<double> cuts{0, 1};
-        for (int k = 0; k < 7; ++k) cuts.push_back(any(random));
+        for (int k = 0; k < 7; ++k)
+            cuts.push_back(any(random));
         std::sort(cuts.begin(), cuts.end());
         const TransferFunction transfer = rugged();
         RayLight light(transfer);
@@ -145,7 +150,8 @@ TEST(RayLight, SuperposedMediaAreARiemannSum) {
 TEST(RayLight, ScalarsOfAnySize) {
     for (const double scale : {1e-30, 1e30}) {
         const TransferFunction unit(OpticalModel::density, {{0, {1, 0, 0}}, {1, {0, 1, 0}}}, {{0.2, 0.0}, {0.7, 9.0}});
-        const TransferFunction scaled(OpticalModel::density, {{0, {1, 0, 0}}, {scale, {0, 1, 0}}}, {{0.2 * scale, 0.0}, {0.7 * scale, 9.0}});
+        const TransferFunction scaled(OpticalModel::density, {{0, {1, 0, 0}}, {scale, {0, 1, 0}}},
+                                      {{0.2 * scale, 0.0}, {0.7 * scale, 9.0}});
         expect_near(light_of(scaled, {{0.1 * scale, 0.9 * scale}}, 1.0), light_of(unit, {{0.1, 0.9}}, 1.0), stated);
     }
 }
@@ -158,7 +164,8 @@ TEST(RayLight, OneUlpApart) {
     expect_near(light_of(step, {{high, low}}, 1.0), {glm::dvec3(-std::expm1(-1)), -std::expm1(-1)}, stated);
     // A spike of that width inside a wide segment, as strong as it is thin: ∫τ = 3·(share of the way) / (that share).
     const double width = high - low;
-    const TransferFunction spike(OpticalModel::density, {{0, {1, 1, 1}}}, {{low, 0.0}, {low, 3 / width}, {high, 3 / width}, {high, 0.0}});
+    const TransferFunction spike(OpticalModel::density, {{0, {1, 1, 1}}},
+                                 {{low, 0.0}, {low, 3 / width}, {high, 3 / width}, {high, 0.0}});
     expect_near(light_of(spike, {{0, 1}}, 1.0), {glm::dvec3(-std::expm1(-3)), -std::expm1(-3)}, stated);
 }
 
@@ -167,14 +174,16 @@ TEST(RayLight, IsPhysicalAtAnyExtreme) {
     std::uniform_real_distribution<double> any(0, 1), exponent(-20, 20);
     for (int i = 0; i < 500; ++i) {
         std::vector<ExtinctionNode> nodes;
-        for (int k = 0; k < 6; ++k) nodes.push_back({any(random), any(random) < 0.3 ? 0.0 : std::pow(10.0, exponent(random))});
+        for (int k = 0; k < 6; ++k)
+            nodes.push_back({any(random), any(random) < 0.3 ? 0.0 : std::pow(10.0, exponent(random))});
         std::sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.scalar < b.scalar; });
         const TransferFunction transfer(OpticalModel::density, {{0, {1, 0.5, 0}}, {1, {0, 0.5, 1}}}, nodes);
         std::vector<ScalarEnds> media{{any(random), any(random)}};
         if (i % 2) media.push_back({any(random), any(random)});
         const Light light = light_of(transfer, media, std::pow(10.0, exponent(random)));
         ASSERT_TRUE(light.opacity >= 0 && light.opacity <= 1);
-        // κ = (1 − s, 1/2, s): green is half the opacity, red and blue share the rest. An optical depth of 1e20 has 1e-16 of rounding per step.
+        // κ = (1 − s, 1/2, s): green is half the opacity, red and blue share the rest. An optical depth of 1e20 has 1e-16 of
+        // rounding per step.
         EXPECT_NEAR(light.color.y, 0.5 * light.opacity, stated);
         EXPECT_NEAR(light.color.x + light.color.z, light.opacity, stated);
         ASSERT_TRUE(light.color.x >= 0 && light.color.z >= 0);
@@ -185,7 +194,8 @@ TEST(RayLight, TwoThousandLayersLoseNothing) {
     const TransferFunction medium(OpticalModel::density, {{0, {1, 1, 1}}}, {{0, -std::log1p(-0.001)}});
     RayLight light(medium);
     const std::vector<ScalarEnds> media{{0, 1}};
-    for (int i = 0; i < 1000; ++i) light.add(media, 1.0);
+    for (int i = 0; i < 1000; ++i)
+        light.add(media, 1.0);
     EXPECT_NEAR(light.light().opacity, 1 - std::pow(0.999, 1000), stated);  // .6323…
     EXPECT_NEAR(light.light().color.x, 1 - std::pow(0.999, 1000), stated);
 }

@@ -44,11 +44,11 @@ Scene scene_of(TetMesh mesh, const std::function<double(const glm::dvec3&)>& f, 
     return scene_of(std::move(mesh), std::move(field), std::move(transfer));
 }
 
-TransferFunction constant_medium(double extinction) { return {OpticalModel::density, {{0, {1.0, 0.5, 0.25}}}, {{0, extinction}}}; }
-
-TransferFunction ramp() {
-    return {OpticalModel::density, {{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.2}, {1, 4.0}}};
+TransferFunction constant_medium(double extinction) {
+    return {OpticalModel::density, {{0, {1.0, 0.5, 0.25}}}, {{0, extinction}}};
 }
+
+TransferFunction ramp() { return {OpticalModel::density, {{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.2}, {1, 4.0}}}; }
 
 double linear(const glm::dvec3& p) { return (p.x + 0.5 * p.y + 0.25 * p.z) / 1.75; }
 
@@ -58,7 +58,11 @@ Camera view_of_unit_cube(Camera::Projection projection, const glm::dvec3& from =
 
 // Looks down the z axis on the unit square of x and y; pixel (i, j) of n² sees x = (i + 1/2)/n.
 Camera from_above(double height = 1.0) {
-    return {.projection = Camera::Projection::parallel, .eye = {0.5, 0.5, 9}, .center = {0.5, 0.5, 0}, .up = {0, 1, 0}, .height = height};
+    return {.projection = Camera::Projection::parallel,
+            .eye = {0.5, 0.5, 9},
+            .center = {0.5, 0.5, 0},
+            .up = {0, 1, 0},
+            .height = height};
 }
 
 struct Chord {
@@ -85,35 +89,44 @@ double distance(const Light& a, const Light& b) {
 double max_distance(const std::vector<PixelTruth>& a, const std::vector<PixelTruth>& b) {
     EXPECT_EQ(a.size(), b.size());
     double largest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, distance(a[i].light, b[i].light));
+    for (std::size_t i = 0; i < a.size(); ++i)
+        largest = std::max(largest, distance(a[i].light, b[i].light));
     return largest;
 }
 
 // The largest distance from one segment through the whole cube, where the scalar is linear.
-double error_in_unit_cube(const Scene& scene, const Camera& camera, ImageSize size, const std::function<double(const glm::dvec3&)>& f) {
+double error_in_unit_cube(const Scene& scene, const Camera& camera, ImageSize size,
+                          const std::function<double(const glm::dvec3&)>& f) {
     const ScreenTransform transform(camera, size);
     double largest = 0;
     for (const PixelTruth& truth : Reference(scene).picture(camera, size)) {
         const auto ray = transform.ray({truth.pixel.x + 0.5, truth.pixel.y + 0.5});
         const Chord chord = chord_in_unit_cube(ray, transform.perspective());
         const auto at = [&](double t) { return f(ray.origin + t * ray.direction); };
-        const Light light = chord.length() > 0 ? integrate_segment(*scene.transfer, at(chord.enter), at(chord.leave), chord.length(), 1e-14) : Light{};
+        const Light light = chord.length() > 0
+                                ? integrate_segment(*scene.transfer, at(chord.enter), at(chord.leave), chord.length(), 1e-14)
+                                : Light{};
         largest = std::max(largest, distance(truth.light, light));
     }
     return largest;
 }
 
 class ReferenceOfEither : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(Reference, ReferenceOfEither, testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
-                         [](const auto& projection) { return projection.param == Camera::Projection::parallel ? "parallel" : "perspective"; });
+INSTANTIATE_TEST_SUITE_P(Reference, ReferenceOfEither,
+                         testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
+                         [](const auto& projection) {
+                             return projection.param == Camera::Projection::parallel ? "parallel" : "perspective";
+                         });
 
 TEST_P(ReferenceOfEither, AConstantMediumInABox) {
     for (const glm::dvec3& from : {glm::dvec3(1.3, -2.1, 0.9), glm::dvec3(-0.4, 0.3, 2), glm::dvec3(1, 0.02, 0.01)}) {
         const Camera camera = view_of_unit_cube(GetParam(), from);
         const ScreenTransform transform(camera, small);
-        const Scene scene = scene_of(grid_mesh(5), [](const glm::dvec3&) { return 3.0; }, constant_medium(1.7));
+        const Scene scene = scene_of(
+            grid_mesh(5), [](const glm::dvec3&) { return 3.0; }, constant_medium(1.7));
         for (const PixelTruth& truth : Reference(scene).picture(camera, small)) {
-            const Chord chord = chord_in_unit_cube(transform.ray({truth.pixel.x + 0.5, truth.pixel.y + 0.5}), transform.perspective());
+            const Chord chord =
+                chord_in_unit_cube(transform.ray({truth.pixel.x + 0.5, truth.pixel.y + 0.5}), transform.perspective());
             const double opacity = -std::expm1(-1.7 * chord.length());
             EXPECT_LT(distance(truth.light, {opacity * glm::dvec3(1, 0.5, 0.25), opacity}), stated);
         }
@@ -122,13 +135,18 @@ TEST_P(ReferenceOfEither, AConstantMediumInABox) {
 
 TEST_P(ReferenceOfEither, ALinearFieldIsOneSegmentWhateverTheMesh) {
     for (const int cells : {1, 6, 13}) {
-        EXPECT_LT(error_in_unit_cube(scene_of(grid_mesh(cells, 0.2, 5), linear, ramp()), view_of_unit_cube(GetParam()), small, linear), stated);
+        EXPECT_LT(error_in_unit_cube(scene_of(grid_mesh(cells, 0.2, 5), linear, ramp()), view_of_unit_cube(GetParam()), small,
+                                     linear),
+                  stated);
     }
-    EXPECT_LT(error_in_unit_cube(scene_of(delaunay_mesh(2000, 3), linear, ramp()), view_of_unit_cube(GetParam()), small, linear), stated);
+    EXPECT_LT(
+        error_in_unit_cube(scene_of(delaunay_mesh(2000, 3), linear, ramp()), view_of_unit_cube(GetParam()), small, linear),
+        stated);
 }
 
 TEST_P(ReferenceOfEither, AnEyeInsideACellAndAtAVertex) {
-    for (const glm::dvec3& eye : {glm::dvec3(0.52, 0.47, 0.55), glm::dvec3(0.5, 0.5, 0.5), glm::dvec3(0.25, 0.6, 0.6), glm::dvec3(0.25, 0.25, 0.6)}) {
+    for (const glm::dvec3& eye :
+         {glm::dvec3(0.52, 0.47, 0.55), glm::dvec3(0.5, 0.5, 0.5), glm::dvec3(0.25, 0.6, 0.6), glm::dvec3(0.25, 0.25, 0.6)}) {
         Camera camera{.projection = GetParam(), .eye = eye, .center = {0.97, 0.9, 0.8}, .up = {0, 0, 1}};
         camera.fov_y_degrees = 70;
         EXPECT_LT(error_in_unit_cube(scene_of(grid_mesh(4), linear, ramp()), camera, small, linear), stated);
@@ -140,7 +158,8 @@ TEST(Reference, ALinearRampThroughASlab) {
     const glm::dvec3 low(0.1, 0.2, 0.9), high(1.0, 0.6, 0.0);
     const double a = 0.5, b = 4.0;  // τ = a + b·x, x from 0 to 1
     const double transmittance = std::exp(-(a + b / 2)), scale = std::sqrt(2 * b);
-    const double rising = std::sqrt(std::numbers::pi / (2 * b)) * std::exp(a * a / (2 * b)) * (std::erf((a + b) / scale) - std::erf(a / scale));
+    const double rising =
+        std::sqrt(std::numbers::pi / (2 * b)) * std::exp(a * a / (2 * b)) * (std::erf((a + b) / scale) - std::erf(a / scale));
     const TransferFunction density(OpticalModel::density, {{0, low}, {1, high}}, {{0, a}, {1, a + b}});
     const TransferFunction emitter(OpticalModel::emitter, {{0, low}}, {{0, a}, {1, a + b}});
     // Rays go downwards: x = 1 − z along them. ∫τκT = κ(0) − κ(1)·T(1) + ∫κ'T, by parts.
@@ -155,11 +174,13 @@ TEST(Reference, ALinearRampThroughASlab) {
     }
 }
 
-// On a picture of 16² the pixel centres look at multiples of 1/32: with 16 boxes a side through the middles of faces' diagonals, with 32
-// boxes through vertices and along edges and faces, the whole way.
+// On a picture of 16² the pixel centres look at multiples of 1/32: with 16 boxes a side through the middles of faces'
+// diagonals, with 32 boxes through vertices and along edges and faces, the whole way.
 TEST(Reference, RaysThroughVerticesEdgesAndFaces) {
     for (const int cells : {1, 2, 16, 32}) {
-        EXPECT_LT(error_in_unit_cube(scene_of(grid_mesh(cells), linear, ramp()), from_above(), {16, 16}, [](const glm::dvec3& p) { return linear(p); }), stated);
+        EXPECT_LT(error_in_unit_cube(scene_of(grid_mesh(cells), linear, ramp()), from_above(), {16, 16},
+                                     [](const glm::dvec3& p) { return linear(p); }),
+                  stated);
     }
 }
 
@@ -170,15 +191,19 @@ TEST(Reference, RelabelledAndPermuted) {
     std::iota(label.begin(), label.end(), 0U);
     std::shuffle(label.begin(), label.end(), random);
     TetMesh other = mesh;
-    for (std::size_t v = 0; v < label.size(); ++v) other.points[label[v]] = mesh.points[v];
+    for (std::size_t v = 0; v < label.size(); ++v)
+        other.points[label[v]] = mesh.points[v];
     for (auto& tet : other.tets) {
-        for (auto& v : tet) v = label[v];
+        for (auto& v : tet)
+            v = label[v];
         std::shuffle(tet.begin(), tet.end(), random);
     }
     std::shuffle(other.tets.begin(), other.tets.end(), random);
     const auto f = [](const glm::dvec3& p) { return 0.5 + 0.5 * std::sin(9 * p.x + 5 * p.y) * std::cos(7 * p.z); };
     const Camera camera = view_of_unit_cube(Camera::Projection::perspective);
-    EXPECT_LT(max_distance(Reference(scene_of(mesh, f, ramp())).picture(camera, small), Reference(scene_of(other, f, ramp())).picture(camera, small)), 1e-13);
+    EXPECT_LT(max_distance(Reference(scene_of(mesh, f, ramp())).picture(camera, small),
+                           Reference(scene_of(other, f, ramp())).picture(camera, small)),
+              1e-13);
 }
 
 // Two cells in one place: their media add up, whichever comes first.
@@ -187,16 +212,21 @@ TEST(Reference, OverlappingCellsAddUp) {
     const std::size_t box = mesh.tets.size();
     // A second cube from z = 1/2 to z = 3/2.
     const TetMesh second = grid_mesh(1);
-    for (const auto& p : second.points) mesh.points.push_back(p + glm::dvec3(0, 0, 0.5));
+    for (const auto& p : second.points)
+        mesh.points.push_back(p + glm::dvec3(0, 0, 0.5));
     const auto shift = static_cast<VertexId>(second.points.size());
-    for (const auto& tet : second.tets) mesh.tets.push_back({tet[0] + shift, tet[1] + shift, tet[2] + shift, tet[3] + shift});
+    for (const auto& tet : second.tets)
+        mesh.tets.push_back({tet[0] + shift, tet[1] + shift, tet[2] + shift, tet[3] + shift});
     ScalarField field{"which", FieldLocation::cells, {}};
-    for (std::size_t c = 0; c < mesh.tets.size(); ++c) field.values.push_back(c < box ? 0 : 1);
+    for (std::size_t c = 0; c < mesh.tets.size(); ++c)
+        field.values.push_back(c < box ? 0 : 1);
     const TransferFunction transfer(OpticalModel::density, {{0, {1, 0, 0}}, {1, {0, 1, 0}}}, {{0, 2.0}, {1, 3.0}});
     // Downwards: half a length of green, half a length of both, half a length of red.
     const double green = -std::expm1(-1.5), both = -std::expm1(-2.5), red = -std::expm1(-1.0);
-    const Light expected = composite({{0, green, 0}, green}, composite({{both * 2 / 5, both * 3 / 5, 0}, both}, {{red, 0, 0}, red}));
-    for (const PixelTruth& t : Reference(scene_of(mesh, field, transfer)).picture(from_above(), {9, 9})) EXPECT_LT(distance(t.light, expected), stated);
+    const Light expected =
+        composite({{0, green, 0}, green}, composite({{both * 2 / 5, both * 3 / 5, 0}, both}, {{red, 0, 0}, red}));
+    for (const PixelTruth& t : Reference(scene_of(mesh, field, transfer)).picture(from_above(), {9, 9}))
+        EXPECT_LT(distance(t.light, expected), stated);
 }
 
 // Three long cells, each in front of the next and the last in front of the first: no order serves all pixels.
@@ -207,9 +237,12 @@ TEST(Reference, CellsInACycle) {
         // A beam along the side of a triangle, 0.1 thick, that rises from one end (z = 0) to the other (z = 1).
         const double angle = 2 * std::numbers::pi * i / 3;
         const glm::dvec3 along(std::cos(angle), std::sin(angle), 0), across(-along.y, along.x, 0);
-        const glm::dvec3 low = -0.3 * across - along + glm::dvec3(0.5, 0.5, 0), high = -0.3 * across + along + glm::dvec3(0.5, 0.5, 1);
+        const glm::dvec3 low = -0.3 * across - along + glm::dvec3(0.5, 0.5, 0),
+                         high = -0.3 * across + along + glm::dvec3(0.5, 0.5, 1);
         const auto v = static_cast<VertexId>(mesh.points.size());
-        for (const glm::dvec3& p : {low - 0.05 * across, low + 0.05 * across, high + glm::dvec3(0, 0, -0.05), high + glm::dvec3(0, 0, 0.05)}) mesh.points.push_back(p);
+        for (const glm::dvec3& p :
+             {low - 0.05 * across, low + 0.05 * across, high + glm::dvec3(0, 0, -0.05), high + glm::dvec3(0, 0, 0.05)})
+            mesh.points.push_back(p);
         mesh.tets.push_back({v, v + 1, v + 2, v + 3});
         field.values.push_back(i);
     }
@@ -220,7 +253,8 @@ TEST(Reference, CellsInACycle) {
     int covered = 0;
     const ImageSize size{128, 128};
     for (const PixelTruth& truth : reference.picture(from_above(2.0), size)) {
-        const auto cells = reference.index().cells_along(reference.index().ray(from_above(2.0), size, {truth.pixel.x + 0.5, truth.pixel.y + 0.5}));
+        const auto cells = reference.index().cells_along(
+            reference.index().ray(from_above(2.0), size, {truth.pixel.x + 0.5, truth.pixel.y + 0.5}));
         covered += !cells.empty();
         Light light;
         for (const Crossing& c : cells) {
@@ -245,7 +279,8 @@ TEST_P(ReferenceOfEither, GapsAreEmpty) {
     TetMesh mesh = grid_mesh(5);
     std::erase_if(mesh.tets, [&](const auto& tet) {
         double z = 0;
-        for (const VertexId v : tet) z += mesh.points[v].z / 4;
+        for (const VertexId v : tet)
+            z += mesh.points[v].z / 4;
         return z > 0.4 && z < 0.6;
     });
     Camera camera = from_above();
@@ -262,7 +297,8 @@ TEST_P(ReferenceOfEither, GapsAreEmpty) {
                     if (ray.origin[axis] <= begin || ray.origin[axis] >= end) leave = -1;
                     continue;
                 }
-                const double a = (begin - ray.origin[axis]) / ray.direction[axis], b = (end - ray.origin[axis]) / ray.direction[axis];
+                const double a = (begin - ray.origin[axis]) / ray.direction[axis],
+                             b = (end - ray.origin[axis]) / ray.direction[axis];
                 enter = std::max(enter, std::min(a, b));
                 leave = std::min(leave, std::max(a, b));
             }
@@ -277,10 +313,12 @@ TEST(Reference, CellFieldsAreConstantInACell) {
     ScalarField field{"layer", FieldLocation::cells, {}};
     for (const auto& tet : mesh.tets) {
         double z = 0;
-        for (const VertexId v : tet) z += mesh.points[v].z / 4;
+        for (const VertexId v : tet)
+            z += mesh.points[v].z / 4;
         field.values.push_back(z > 0.5 ? 1 : 0);
     }
-    const TransferFunction transfer(OpticalModel::density, {{0, {0, 0, 1}}, {0.5, {0, 0, 1}}, {0.5, {1, 0, 0}}}, {{0, 1}, {1, 3}});
+    const TransferFunction transfer(OpticalModel::density, {{0, {0, 0, 1}}, {0.5, {0, 0, 1}}, {0.5, {1, 0, 0}}},
+                                    {{0, 1}, {1, 3}});
     const double front = 1 - std::exp(-1.5), back = 1 - std::exp(-0.5);
     for (const PixelTruth& t : Reference(scene_of(mesh, field, transfer)).picture(from_above(), {7, 7})) {
         EXPECT_LT(distance(t.light, {{front, 0, (1 - front) * back}, front + (1 - front) * back}), stated);
@@ -293,10 +331,13 @@ TEST(Reference, CellsWithValuesThatAreNotFiniteAreLeftOut) {
     field.values[90] = std::numeric_limits<double>::quiet_NaN();
     field.values[120] = std::numeric_limits<double>::infinity();
     TetMesh without = mesh;
-    std::erase_if(without.tets, [](const auto& tet) { return std::find(tet.begin(), tet.end(), 90U) != tet.end() || std::find(tet.begin(), tet.end(), 120U) != tet.end(); });
+    std::erase_if(without.tets, [](const auto& tet) {
+        return std::find(tet.begin(), tet.end(), 90U) != tet.end() || std::find(tet.begin(), tet.end(), 120U) != tet.end();
+    });
     ASSERT_LT(without.tets.size(), mesh.tets.size());
     const Camera camera = view_of_unit_cube(Camera::Projection::parallel);
-    const auto a = Reference(scene_of(mesh, field, ramp())).picture(camera, small), b = Reference(scene_of(without, linear, ramp())).picture(camera, small);
+    const auto a = Reference(scene_of(mesh, field, ramp())).picture(camera, small),
+               b = Reference(scene_of(without, linear, ramp())).picture(camera, small);
     EXPECT_LT(max_distance(a, b), 1e-13);
     field.values.assign(field.values.size(), std::numeric_limits<double>::quiet_NaN());
     EXPECT_THROW(Reference(scene_of(mesh, field, ramp())), Error);
@@ -311,18 +352,27 @@ TEST_P(ReferenceOfEither, AnyScaleAndPlace) {
     const auto expected = Reference(scene_of(mesh, field, ramp())).picture(camera, small);
     for (const double scale : {1e-12, 1e-9, 1e9, 1e12}) {
         TetMesh scaled = mesh;
-        for (auto& p : scaled.points) p *= scale;
+        for (auto& p : scaled.points)
+            p *= scale;
         Camera seen = camera;
         seen.eye *= scale;
         seen.center *= scale;
         seen.height *= scale;
         auto nodes = ramp().extinction_nodes();
-        for (auto& node : nodes) node.extinction /= scale;
-        EXPECT_LT(max_distance(Reference(scene_of(scaled, field, {OpticalModel::density, ramp().color_nodes(), nodes})).picture(seen, small), expected), stated) << scale;
+        for (auto& node : nodes)
+            node.extinction /= scale;
+        EXPECT_LT(
+            max_distance(
+                Reference(scene_of(scaled, field, {OpticalModel::density, ramp().color_nodes(), nodes})).picture(seen, small),
+                expected),
+            stated)
+            << scale;
     }
-    // Near 1e6 a point is a multiple of 1e-10: the moved mesh is another one by as much. Silhouettes, where the chord jumps, included.
+    // Near 1e6 a point is a multiple of 1e-10: the moved mesh is another one by as much. Silhouettes, where the chord jumps,
+    // included.
     TetMesh shifted = mesh;
-    for (auto& p : shifted.points) p += 1e6;
+    for (auto& p : shifted.points)
+        p += 1e6;
     Camera seen = camera;
     seen.eye += 1e6;
     seen.center += 1e6;
@@ -332,22 +382,27 @@ TEST_P(ReferenceOfEither, AnyScaleAndPlace) {
 // τ·l up to 1e8 and beyond, transparent to opaque within a cell, scalars of any size.
 TEST(Reference, Extremes) {
     for (const double extinction : {1e2, 1e5, 1e8, 1e30}) {
-        for (const PixelTruth& t : Reference(scene_of(grid_mesh(3), linear, constant_medium(extinction))).picture(from_above(), {8, 8})) {
+        for (const PixelTruth& t :
+             Reference(scene_of(grid_mesh(3), linear, constant_medium(extinction))).picture(from_above(), {8, 8})) {
             EXPECT_LT(distance(t.light, {{1, 0.5, 0.25}, 1}), stated);
         }
     }
     for (const double scale : {1e-30, 1e30}) {
         auto color = ramp().color_nodes();
         auto extinction = ramp().extinction_nodes();
-        for (auto& node : color) node.scalar *= scale;
-        for (auto& node : extinction) node.scalar *= scale;
+        for (auto& node : color)
+            node.scalar *= scale;
+        for (auto& node : extinction)
+            node.scalar *= scale;
         const auto scaled = [&](const glm::dvec3& p) { return scale * linear(p); };
         const Scene scene = scene_of(grid_mesh(4, 0.2, 2), scaled, {OpticalModel::density, color, extinction});
         EXPECT_LT(error_in_unit_cube(scene, view_of_unit_cube(Camera::Projection::perspective), small, scaled), stated);
     }
     // Equal scalars on a step: its right side, everywhere.
     const TransferFunction step(OpticalModel::density, {{0, {1, 1, 1}}}, {{0.3, 0.0}, {0.3, 1.0}});
-    for (const PixelTruth& t : Reference(scene_of(grid_mesh(3, 0.2, 2), [](const glm::dvec3&) { return 0.3; }, step)).picture(from_above(), {8, 8})) {
+    for (const PixelTruth& t : Reference(scene_of(
+                                             grid_mesh(3, 0.2, 2), [](const glm::dvec3&) { return 0.3; }, step))
+                                   .picture(from_above(), {8, 8})) {
         EXPECT_NEAR(t.light.opacity, -std::expm1(-1.0), stated);
     }
 }
@@ -357,19 +412,24 @@ TEST(Reference, ManyThinCells) {
     const int slabs = 1000;
     TetMesh mesh;
     for (int k = 0; k <= slabs; ++k) {
-        for (int corner = 0; corner < 4; ++corner) mesh.points.emplace_back(corner & 1, corner >> 1, double(k) / slabs);
+        for (int corner = 0; corner < 4; ++corner)
+            mesh.points.emplace_back(corner & 1, corner >> 1, double(k) / slabs);
     }
     for (int k = 0; k < slabs; ++k) {
         const auto v = static_cast<VertexId>(4 * k);
-        for (const auto& [b, c] : {std::pair{1U, 3U}, {3U, 2U}, {2U, 6U}, {6U, 4U}, {4U, 5U}, {5U, 1U}}) mesh.tets.push_back({v, v + b, v + c, v + 7});
+        for (const auto& [b, c] : {std::pair{1U, 3U}, {3U, 2U}, {2U, 6U}, {6U, 4U}, {4U, 5U}, {5U, 1U}})
+            mesh.tets.push_back({v, v + b, v + c, v + 7});
     }
     const Scene scene = scene_of(mesh, linear, constant_medium(-std::log1p(-0.001) * slabs));
-    for (const PixelTruth& t : Reference(scene).picture(from_above(), {5, 5})) EXPECT_NEAR(t.light.opacity, 1 - std::pow(0.999, slabs), stated);
+    for (const PixelTruth& t : Reference(scene).picture(from_above(), {5, 5}))
+        EXPECT_NEAR(t.light.opacity, 1 - std::pow(0.999, slabs), stated);
 }
 
 // The renderer, on a curved field over an irregular mesh: 2e-3, its table's error, for a picture moved by 1/512 of a pixel.
 TEST_P(ReferenceOfEither, TheRendererAgrees) {
-    const auto f = [](const glm::dvec3& p) { return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z); };
+    const auto f = [](const glm::dvec3& p) {
+        return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z);
+    };
     const Scene scene = scene_of(delaunay_mesh(4000, 8), f, ramp());
     const Camera camera = view_of_unit_cube(GetParam());
     const ImageSize size{128, 128};
@@ -413,7 +473,8 @@ TEST(Reference, TheSameForAnyNumberOfThreads) {
     const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
     const auto serial = Reference(scene).picture(camera, small, 1.0 / 512);
     EXPECT_EQ(max_distance(parallel, serial), 0.0);
-    for (std::size_t i = 0; i < serial.size(); ++i) EXPECT_EQ(distance(parallel[i].low, serial[i].low), 0.0);
+    for (std::size_t i = 0; i < serial.size(); ++i)
+        EXPECT_EQ(distance(parallel[i].low, serial[i].low), 0.0);
 }
 
 TEST(Reference, ASampleIsSpreadOverTheMesh) {

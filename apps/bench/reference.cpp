@@ -33,9 +33,11 @@ const View& grid() {
         auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, [](const glm::dvec3& p) {
             return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z);
         }));
-        auto transfer = std::make_shared<TransferFunction>(OpticalModel::density, std::vector<ColorNode>{{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}},
+        auto transfer = std::make_shared<TransferFunction>(OpticalModel::density,
+                                                           std::vector<ColorNode>{{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}},
                                                            std::vector<ExtinctionNode>{{0, 0.1}, {1, 3.0}});
-        const Camera camera = frame_bounds(bounds(mesh->points), Camera::Projection::perspective, {1.3, -2.1, 0.9}, {0, 0, 1}, 1.0);
+        const Camera camera =
+            frame_bounds(bounds(mesh->points), Camera::Projection::perspective, {1.3, -2.1, 0.9}, {0, 0, 1}, 1.0);
         return View{{mesh, field, transfer}, camera};
     }();
     return view;
@@ -45,7 +47,8 @@ const View& bluntfin() {
     static const View view = [] {
         const std::filesystem::path data = std::filesystem::path(CELLPROJ_SHARED_DATA) / "bluntfin", scenes = CELLPROJ_SCENES;
         if (!std::filesystem::exists(data)) return View{};
-        auto mesh = std::make_shared<TetMesh>(tetrahedralize(read(data / "bluntfinxyz.bin", {.solution = data / "bluntfinq.bin"})));
+        auto mesh =
+            std::make_shared<TetMesh>(tetrahedralize(read(data / "bluntfinxyz.bin", {.solution = data / "bluntfinq.bin"})));
         auto field = std::make_shared<ScalarField>(select_scalar(*mesh, "", "blunt fin"));
         auto transfer = std::make_shared<TransferFunction>(read_transfer_function(scenes / "bluntfin_transfer.json"));
         return View{{mesh, field, transfer}, read_cameras(scenes / "bluntfin_camera.json").at(0)};
@@ -62,20 +65,23 @@ bool present(benchmark::State& state, const View& view) {
 
 void ReferenceIndex(benchmark::State& state, const View& (*view)()) {
     if (!present(state, view())) return;
-    for (auto _ : state) benchmark::DoNotOptimize(RayIndex(*view().scene.mesh).middle());
+    for (auto _ : state)
+        benchmark::DoNotOptimize(RayIndex(*view().scene.mesh).middle());
 }
 
 void ReferencePicture(benchmark::State& state, const View& (*view)()) {
     if (!present(state, view())) return;
     const Reference reference(view().scene);
-    for (auto _ : state) benchmark::DoNotOptimize(reference.picture(view().camera, size).data());
+    for (auto _ : state)
+        benchmark::DoNotOptimize(reference.picture(view().camera, size).data());
 }
 
 void ReferenceSample(benchmark::State& state, const View& (*view)()) {  // 4096 pixels: their choice and their truth
     if (!present(state, view())) return;
     const Reference reference(view().scene);
     const Camera& camera = view().camera;
-    for (auto _ : state) benchmark::DoNotOptimize(reference.pixels(camera, size, reference.sample(camera, size, 4096)).data());
+    for (auto _ : state)
+        benchmark::DoNotOptimize(reference.pixels(camera, size, reference.sample(camera, size, 4096)).data());
 }
 
 BENCHMARK_CAPTURE(ReferenceIndex, grid, grid)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
