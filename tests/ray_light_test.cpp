@@ -167,6 +167,8 @@ TEST(RayLight, OneUlpApart) {
     const TransferFunction spike(OpticalModel::density, {{0, {1, 1, 1}}},
                                  {{low, 0.0}, {low, 3 / width}, {high, 3 / width}, {high, 0.0}});
     expect_near(light_of(spike, {{0, 1}}, 1.0), {glm::dvec3(-std::expm1(-3)), -std::expm1(-3)}, stated);
+    // On a way of 1.4 its share lies between two float64 near the cuts' own shares.
+    expect_near(light_of(spike, {{-0.1, 1.3}}, 1.4), {glm::dvec3(-std::expm1(-3)), -std::expm1(-3)}, stated);
 }
 
 TEST(RayLight, IsPhysicalAtAnyExtreme) {

@@ -430,7 +430,7 @@ TEST_P(ReferenceOfEither, TheRendererAgrees) {
     const auto f = [](const glm::dvec3& p) {
         return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z);
     };
-    const Scene scene = scene_of(delaunay_mesh(4000, 8), f, ramp());
+    const Scene scene = scene_of(delaunay_mesh(1500, 8), f, ramp());
     const Camera camera = view_of_unit_cube(GetParam());
     const ImageSize size{128, 128};
     const Image image = make_renderer(Backend::gl_osmesa)->render(scene, camera, size);
