@@ -432,7 +432,7 @@ TEST_P(ReferenceOfEither, TheRendererAgrees) {
     };
     const Scene scene = scene_of(delaunay_mesh(1500, 8), f, ramp());
     const Camera camera = view_of_unit_cube(GetParam());
-    const ImageSize size{128, 128};
+    const ImageSize size{64, 64};
     const Image image = make_renderer(Backend::gl_osmesa)->render(scene, camera, size);
     const Reference reference(scene);
     const ImageError moved = compare(image, reference.picture(camera, size, 1.0 / 512));
