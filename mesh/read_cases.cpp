@@ -111,6 +111,7 @@ Dataset read_ensight(const fs::path& file, const ReadOptions& options) {
 // ---- Exodus II ----
 
 Dataset read_exodus(const fs::path& file, const ReadOptions& options) {
+    require_whole_netcdf(file);
     vtkNew<vtkExodusIIReader> reader;
     reader->SetFileName(file.c_str());
     capture_errors(file, [&] {

@@ -171,6 +171,11 @@ Dataset read_collection(const fs::path& file, const ReadOptions& options) {
 
 }  // namespace
 
+bool is_vtk_xml_index(const fs::path& file) {
+    const std::string type = xml_dataset_type(file);
+    return type == "Collection" || (type.starts_with('P') && type != "PolyData") || type.starts_with("vtk");
+}
+
 Dataset read_vtk_xml(const fs::path& file, const ReadOptions& options) {
     const std::string type = xml_dataset_type(file);
     if (type == "Collection") {
