@@ -41,8 +41,9 @@ Field to_field(vtkDataArray& array, const std::string& name);
 
 // vtk_grid.cpp: the volume cells and the fields of a grid; `place` names it in messages, `format` is told in words. All
 // linear kinds are taken; quadratic, Lagrange and Bézier cells by their corners only, so curved edges become straight.
-// Cells marked as duplicate or hidden in vtkGhostType, or with a point marked as hidden, are left out and counted. Throws
-// Error (format) for cells that do not fit their lists, Error (data) for other kinds and for point ids out of range.
+// Cells marked as duplicate or hidden in vtkGhostType, or with a point marked as hidden, are left out and counted. The grid
+// is emptied on the way, so that little is held twice. Throws Error (format) for cells that do not fit their lists, Error
+// (data) for other kinds and for point ids out of range.
 Dataset to_dataset(vtkUnstructuredGrid& grid, const std::filesystem::path& place, const std::string& format);
 
 // legacy_cells.cpp: VTK's legacy reader follows the vertex counts of the cells without a look at how long the list is,
