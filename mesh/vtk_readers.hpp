@@ -29,6 +29,9 @@ Dataset read_vtk_legacy(const std::filesystem::path& file);
 Dataset read_openfoam(const std::filesystem::path& file, const ReadOptions& options);
 Dataset read_ensight(const std::filesystem::path& file, const ReadOptions& options);
 Dataset read_exodus(const std::filesystem::path& file, const ReadOptions& options);
+// openfoam_files.cpp: throws Error (format) for a field at this time, in the case or one processor's part of it, whose file
+// is cut off. `entry`: what the user named.
+void require_whole_openfoam_fields(const std::filesystem::path& folder, double time, const std::filesystem::path& entry);
 // netcdf_size.cpp: throws Error (format) for a classic netCDF file (Exodus II) that is shorter than its header says.
 void require_whole_netcdf(const std::filesystem::path& file);
 Dataset read_cgns(const std::filesystem::path& file, const ReadOptions& options);

@@ -359,14 +359,16 @@ std::vector<DamageSample> damage_samples() {
         real("OpenFoam", "openfoam_case/64BitFloats", "case.foam",
              {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner", "constant/polyMesh/neighbour",
               "0/p", "0/U"}, 1),
-        real("EnSightAscii", "ensight_nfaced", "TEST.case", {"TEST.case", "test.geo", "test.pressure.0001"}, 2),
-        real("EnSightBinary", "ensight_nfaced", "TEST_bin.case",
-             {"TEST_bin.case", "test_bin.geo", "test_bin.pressure.0001", "test_bin.velocity.0001"}, 2),
+        real("EnSightAscii", "ensight_nfaced", "TEST.case", {"TEST.case", "test.geo"}, 4),
+        real("EnSightBinary", "ensight_nfaced", "TEST_bin.case", {"TEST_bin.case", "test_bin.geo"}, 4),
+        real("EnSightAsciiValues", "ensight_nfaced", "TEST.case", {"test.pressure.0001"}, 4),
+        real("EnSightBinaryValues", "ensight_nfaced", "TEST_bin.case", {"test_bin.pressure.0001", "test_bin.velocity.0001"}, 4),
         real("CgnsAdf", "cylinder3d_cgns/cylinder3D_adf.cgns", "cylinder3D_adf.cgns", {"cylinder3D_adf.cgns"}, 10),
         real("CgnsHdf5", "cylinder3d_cgns/cylinder3D_hdf5.cgns", "cylinder3D_hdf5.cgns", {"cylinder3D_hdf5.cgns"}, 10)};
     for (DamageSample& sample : samples) {
         if (sample.name == "Vtp") sample.surface = true;
-        for (const char* name : {"LegacyAscii", "LegacyImage", "Gmsh4Ascii", "Tetgen", "Obj"})
+        for (const char* name : {"LegacyAscii", "LegacyImage", "Gmsh4Ascii", "Tetgen", "Obj", "EnSightAsciiValues",
+                                 "EnSightBinaryValues"})
             sample.open_ended = sample.open_ended || sample.name == name;
     }
     return samples;

@@ -21,7 +21,8 @@ struct DamageSample {
     bool surface = false;
     std::string solution = {};       // of a PLOT3D grid
     std::size_t flips_at_once = 1;   // more where one read takes long
-    // A file may end after any of its parts or in its last number: neither an end nor a number of parts is written down.
+    // A file may end after any of its parts or in its last number: neither an end nor a number of parts is written down
+    // (or, EnSight's values, VTK's reader does not look at it).
     bool open_ended = false;
 };
 
