@@ -38,13 +38,14 @@ struct ReadOptions {
 // - TetGen, Gmsh, Medit and SU2 (text_formats.hpp).
 // The format is told by content first and by the file's suffix second. Structured, rectilinear and image grids become
 // curvilinear ones. All volume blocks of a file become one mesh, points unmerged and with NaN where a block lacks a
-// field; other blocks and other cells are skipped and counted. VTK's readers run in a child process each (a fork of this
-// one), since damaged files make them crash, hang or ask for all memory: this, too, gives an Error, and VTK's messages are
-// caught, not printed. isolated_read.hpp says what limits of time and memory the child has and what that means for a
-// program of several threads. Throws Error:
+// field; other blocks and other cells are skipped and counted. VTK's readers run in a child process each (a fork of
+// this one), since damaged files make them crash, hang or ask for all memory: this, too, gives an Error, and VTK's
+// messages are caught, not printed. isolated_read.hpp says what limits of time and memory the child has and what that
+// means for a program of several threads. Throws Error:
 // - environment: no child process to be had;
 // - file: missing, a folder that is no case, unreadable;
-// - format: not recognised, more than its reader can take in the limits, truncated, malformed, a part of it (a piece, a file of the case) missing;
+// - format: not recognised, truncated, malformed, beyond the child's limits, a part of it (a piece, a file of the case)
+//   missing;
 // - data: no volume cells, cells of an unsupported kind, grids with one point in a direction, points that are not
 // finite,
 //   vertex ids out of range, a solution of another size;
