@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Private to mesh/: what two processes of one machine tell each other, as bytes: numbers as they lie in memory, arrays and
-// texts behind their length (u64). Nothing is taken from the other side that is not there: every count is held against the
-// bytes that are left.
+// Private to mesh/: what two processes of one machine tell each other, as bytes: numbers as they lie in memory, arrays
+// and texts behind their length (u64). Nothing is taken from the other side that is not there: every count is held
+// against the bytes that are left.
 #pragma once
 
 #include <cstddef>
@@ -69,7 +69,8 @@ public:
     using Fail = std::function<void(const std::string& expected, const std::string& found)>;
     using Taken = std::function<void(std::string_view bytes)>;
 
-    // `fail` throws; `taken` hears of the bytes of each array after they have been copied, so that they can be given back.
+    // `fail` throws; `taken` hears of the bytes of each array after they have been copied, so that they can be given
+    // back.
     ByteReader(std::string_view bytes, Fail fail, Taken taken = {})
         : bytes_(bytes), fail_(std::move(fail)), taken_(std::move(taken)) {}
 

@@ -89,7 +89,7 @@ struct Channels {
 };
 
 std::size_t size_of(const Descriptor& file) {
-    struct stat status{};
+    struct stat status {};
     return fstat(file.get(), &status) == 0 ? static_cast<std::size_t>(status.st_size) : 0;
 }
 
@@ -133,8 +133,8 @@ private:
 // ---- The child ----
 
 struct Limits {
-    double seconds;            // from start to end
-    rlim_t processor_seconds;  // of them on a processor
+    double seconds;                // from start to end
+    rlim_t processor_seconds;      // of them on a processor
     std::optional<rlim_t> memory;  // bytes
 };
 
@@ -262,8 +262,8 @@ public:
         wait(0);
     }
 
-    // Its status, or none while it runs. A caller that ignores SIGCHLD has its children reaped by the kernel: their status
-    // is lost and counts as 0; what the child sent decides.
+    // Its status, or none while it runs. A caller that ignores SIGCHLD has its children reaped by the kernel: their
+    // status is lost and counts as 0; what the child sent decides.
     std::optional<int> status_if_ended() { return wait(WNOHANG); }
 
 private:
@@ -301,8 +301,8 @@ Outcome follow(Child& child, const Descriptor& events, double seconds, const Pro
     bool open = true;
     while (!(outcome.status = child.status_if_ended())) {
         if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds) return outcome;
-        // The end of the pipe tells of the child's end at once; only a child of another thread's read, forked while this
-        // pipe was open, can keep it open, so it is not waited for.
+        // The end of the pipe tells of the child's end at once; only a child of another thread's read, forked while
+        // this pipe was open, can keep it open, so it is not waited for.
         pollfd ready{open ? events.get() : -1, POLLIN, 0};
         if (poll(&ready, 1, open ? 20 : 1) > 0) open = receive();
     }
@@ -311,8 +311,8 @@ Outcome follow(Child& child, const Descriptor& events, double seconds, const Pro
     return outcome;
 }
 
-// Whether a sanitizer found fault with our own code (UndefinedBehaviorSanitizer sees nothing else; AddressSanitizer names
-// functions, innermost first): no damage of the file explains that away.
+// Whether a sanitizer found fault with our own code (UndefinedBehaviorSanitizer sees nothing else; AddressSanitizer
+// names functions, innermost first): no damage of the file explains that away.
 bool blames_us(const std::string& report) {
     if (report.find("runtime error:") != std::string::npos) return true;
     if (report.find("AddressSanitizer") == std::string::npos) return false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The size that the header of a classic netCDF file announces ("The NetCDF Classic Format Specification", Unidata; versions
-// 1, 2 and 5). The library itself does not ask: behind the end of a file it reads zeros.
+// The size that the header of a classic netCDF file announces ("The NetCDF Classic Format Specification", Unidata;
+// versions 1, 2 and 5). The library itself does not ask: behind the end of a file it reads zeros.
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -71,8 +71,9 @@ vtkSmartPointer<vtkUnstructuredGrid> unstructured(bool polyhedron) {
     grid->SetPoints(points);
     constexpr std::array<int, 4> types{VTK_HEXAHEDRON, VTK_PYRAMID, VTK_WEDGE, VTK_TETRA};
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        std::vector<vtkIdType> ids(mesh.cells.vertices.begin() + static_cast<std::ptrdiff_t>(mesh.cells.offsets[c]),
-                                   mesh.cells.vertices.begin() + static_cast<std::ptrdiff_t>(mesh.cells.offsets[c + 1]));
+        std::vector<vtkIdType> ids(
+            mesh.cells.vertices.begin() + static_cast<std::ptrdiff_t>(mesh.cells.offsets[c]),
+            mesh.cells.vertices.begin() + static_cast<std::ptrdiff_t>(mesh.cells.offsets[c + 1]));
         grid->InsertNextCell(types[c], static_cast<vtkIdType>(ids.size()), ids.data());
     }
     if (polyhedron) {
@@ -166,7 +167,8 @@ DamageSample index_of(const std::string& name, const std::string& suffix, const 
 }
 
 const char* const pvtu =
-    "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PUnstructuredGrid GhostLevel=\"0\">\n"
+    "<VTKFile type=\"PUnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PUnstructuredGrid "
+    "GhostLevel=\"0\">\n"
     "<PPoints><PDataArray type=\"Float64\" NumberOfComponents=\"3\"/></PPoints>\n"
     "<PPointData><PDataArray type=\"Float64\" Name=\"potential\"/></PPointData>\n"
     "<Piece Source=\"piece.vtu\"/><Piece Source=\"piece.vtu\"/>\n</PUnstructuredGrid>\n</VTKFile>\n";
@@ -175,7 +177,8 @@ const char* const vtm =
     "<DataSet index=\"0\" name=\"fluid\" file=\"piece.vtu\"/>\n<Block index=\"1\" name=\"parts\">\n"
     "<DataSet index=\"0\" file=\"piece.vtu\"/>\n</Block>\n</vtkMultiBlockDataSet>\n</VTKFile>\n";
 const char* const pvd =
-    "<VTKFile type=\"Collection\" version=\"0.1\"><Collection>\n<DataSet timestep=\"0\" part=\"0\" file=\"piece.vtu\"/>\n"
+    "<VTKFile type=\"Collection\" version=\"0.1\"><Collection>\n<DataSet timestep=\"0\" part=\"0\" "
+    "file=\"piece.vtu\"/>\n"
     "<DataSet timestep=\"0.5\" part=\"0\" file=\"piece.vtu\"/>\n</Collection></VTKFile>\n";
 
 fs::path write_exodus(const fs::path& folder, const fs::path&) {
@@ -273,7 +276,8 @@ vtkSmartPointer<vtkPolyData> polygons() {
         points->InsertNextPoint(p.x, p.y, p.z);
     data->SetPoints(points);
     data->Allocate();
-    constexpr std::array<std::array<vtkIdType, 3>, 5> triangles{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 4, 2}}};
+    constexpr std::array<std::array<vtkIdType, 3>, 5> triangles{
+        {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 4, 2}}};
     for (const auto& t : triangles)
         data->InsertNextCell(VTK_TRIANGLE, 3, t.data());
     add_fields(*data);
@@ -304,7 +308,8 @@ std::string ply(bool binary) {
     if (!binary) return bytes + corner_points + corner_faces;
     for (const float x : {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0})
         append(bytes, x);
-    for (const auto& t : std::array<std::array<std::int32_t, 3>, 5>{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 4, 2}}}) {
+    for (const auto& t :
+         std::array<std::array<std::int32_t, 3>, 5>{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 4, 2}}}) {
         append(bytes, std::uint8_t{3});
         append(bytes, t);
     }
@@ -351,24 +356,28 @@ std::vector<DamageSample> damage_samples() {
         text("Off", ".off", "OFF\n5 5 0\n" + corner_points + corner_faces, true),
         text("PlyAscii", ".ply", ply(false), true),
         text("PlyBinary", ".ply", ply(true), true),
-        text("Obj", ".obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 2 5 3\n", true),
+        text("Obj", ".obj",
+             "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 2 5 3\n", true),
         xml("Vtp", ".vtp", Encoding::zlib, [] { return vtkSmartPointer<vtkDataSet>(polygons()); }),
-        real("ExodusReal", "exodus_small", "simple-cube-multi-element-order1.e", {"simple-cube-multi-element-order1.e"}, 4),
+        real("ExodusReal", "exodus_small", "simple-cube-multi-element-order1.e", {"simple-cube-multi-element-order1.e"},
+             4),
         real("NrrdGzip", "volumes/nrrd/BallBinary30x30x30_gz.nrrd", "BallBinary30x30x30_gz.nrrd",
              {"BallBinary30x30x30_gz.nrrd"}, 4),
         real("OpenFoam", "openfoam_case/64BitFloats", "case.foam",
-             {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner", "constant/polyMesh/neighbour",
-              "0/p", "0/U"}, 1),
+             {"constant/polyMesh/points", "constant/polyMesh/faces", "constant/polyMesh/owner",
+              "constant/polyMesh/neighbour", "0/p", "0/U"},
+             1),
         real("EnSightAscii", "ensight_nfaced", "TEST.case", {"TEST.case", "test.geo"}, 4),
         real("EnSightBinary", "ensight_nfaced", "TEST_bin.case", {"TEST_bin.case", "test_bin.geo"}, 4),
         real("EnSightAsciiValues", "ensight_nfaced", "TEST.case", {"test.pressure.0001"}, 4),
-        real("EnSightBinaryValues", "ensight_nfaced", "TEST_bin.case", {"test_bin.pressure.0001", "test_bin.velocity.0001"}, 4),
+        real("EnSightBinaryValues", "ensight_nfaced", "TEST_bin.case",
+             {"test_bin.pressure.0001", "test_bin.velocity.0001"}, 4),
         real("CgnsAdf", "cylinder3d_cgns/cylinder3D_adf.cgns", "cylinder3D_adf.cgns", {"cylinder3D_adf.cgns"}, 10),
         real("CgnsHdf5", "cylinder3d_cgns/cylinder3D_hdf5.cgns", "cylinder3D_hdf5.cgns", {"cylinder3D_hdf5.cgns"}, 10)};
     for (DamageSample& sample : samples) {
         if (sample.name == "Vtp") sample.surface = true;
-        for (const char* name : {"LegacyAscii", "LegacyImage", "Gmsh4Ascii", "Tetgen", "Obj", "EnSightAsciiValues",
-                                 "EnSightBinaryValues"})
+        for (const char* name :
+             {"LegacyAscii", "LegacyImage", "Gmsh4Ascii", "Tetgen", "Obj", "EnSightAsciiValues", "EnSightBinaryValues"})
             sample.open_ended = sample.open_ended || sample.name == name;
     }
     return samples;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every format, damaged: one good file each, cut at 20 places and with 200 flipped bytes, through `read` and `tetrahedralize`
-// or `read_surface`. Each test runs in a child process, where a crash or a hang is a failure like any other, and where the
-// peak of memory belongs to this format alone.
+// Every format, damaged: one good file each, cut at 20 places and with 200 flipped bytes, through `read` and
+// `tetrahedralize` or `read_surface`. Each test runs in a child process, where a crash or a hang is a failure like any
+// other, and where the peak of memory belongs to this format alone.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -122,7 +122,8 @@ void try_damaged(const DamageSample& sample, const fs::path& entry, const std::s
     try {
         const bool same = content_of(sample, entry) == whole;
         ++(same ? findings.unchanged : findings.changed);
-        if (!same && damage == Damage::cut && !sample.open_ended) findings.complain(about, "less is read without a word");
+        if (!same && damage == Damage::cut && !sample.open_ended)
+            findings.complain(about, "less is read without a word");
     } catch (const Error& error) {
         ++findings.errors;
         const std::string text = error.what();

@@ -41,7 +41,7 @@ std::size_t memory_file_bytes() {
     std::size_t bytes = 0;
     std::error_code gone;
     for (const auto& file : fs::directory_iterator("/proc/self/fd", gone)) {
-        struct stat status{};
+        struct stat status {};
         const std::string name = fs::read_symlink(file, gone).string();
         if (name.starts_with("/memfd:") && stat(file.path().c_str(), &status) == 0)
             bytes += 512 * static_cast<std::size_t>(status.st_blocks);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From a file to tetrahedra: time, and the peak of memory against the size of what comes out. ReadTets reads a .vtu of 10
-// million tetrahedra, which it writes to the temporary folder first (200 MB); SplitHexahedra cuts a million.
+// From a file to tetrahedra: time, and the peak of memory against the size of what comes out. ReadTets reads a .vtu of
+// 10 million tetrahedra, which it writes to the temporary folder first (200 MB); SplitHexahedra cuts a million.
 #include <benchmark/benchmark.h>
 
 #include <unistd.h>
