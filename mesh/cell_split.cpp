@@ -114,6 +114,9 @@ void CellSplitter::turn_alike() {
 }
 
 CellSplitter::Flaws CellSplitter::flaws(const glm::dvec3& apex, VertexId apex_id) const {
+    // Sums of the largest numbers overflow; such a point has no exact sign on any side.
+    const bool finite = std::isfinite(apex.x) && std::isfinite(apex.y) && std::isfinite(apex.z);
+    if (!finite) return {surface_.size() + 1, surface_.size() + 1};
     std::size_t positive = 0;
     std::size_t negative = 0;
     std::size_t flat = 0;

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "mesh/byte_stream.hpp"
 #include "mesh/error.hpp"
 
 namespace cellproj {
@@ -16,7 +16,7 @@ namespace cellproj {
 namespace {
 
 constexpr std::string_view magic = "cpmesher";
-constexpr std::uint32_t version = 2;
+constexpr std::uint32_t version = 3;
 constexpr std::size_t header_size = 8 + 4 + 4 + 8;
 
 enum class Kind : std::uint32_t { request = 1, answer = 2, surface_request = 3, refusal = 4 };
@@ -48,132 +48,47 @@ constexpr std::size_t max_mesher_points = std::numeric_limits<std::int32_t>::max
 static_assert(sizeof(glm::dvec3) == 24 && sizeof(Region) == 40 && sizeof(std::array<VertexId, 4>) == 16,
               "the format stores these structs as they lie in memory");
 
-class Writer {
-public:
-    template <class T>
-    void value(const T& number) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        body_.append(reinterpret_cast<const char*>(&number), sizeof(T));
-    }
+// The message of a kind whose body `fill` writes.
+template <class Fill>
+std::string make_message(Kind kind, Fill fill) {
+    std::string message;
+    ByteWriter writer([&](std::string_view bytes) { message += bytes; });
+    message += magic;
+    writer.value(version);
+    writer.value(kind);
+    writer.value(std::uint64_t{0});
+    fill(writer);
+    const std::uint64_t body = message.size() - header_size;
+    std::memcpy(message.data() + header_size - sizeof(body), &body, sizeof(body));
+    return message;
+}
 
-    template <class T>
-    void array(const std::vector<T>& numbers) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        body_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T));
-    }
-
-    void text(const std::string& words) {
-        value(std::uint64_t{words.size()});
-        body_ += words;
-    }
-
-    std::string message(Kind kind) const {
-        Writer header;
-        header.body_ = magic;
-        header.value(version);
-        header.value(kind);
-        header.value(std::uint64_t{body_.size()});
-        return std::move(header.body_) + body_;
-    }
-
-private:
-    std::string body_;
-};
-
-class Reader {
-public:
-    Reader(std::string_view bytes, const std::string& place) : bytes_(bytes), place_(place) {}
-
-    [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
+// What `take` makes of the body of a message of this kind, all of it.
+template <class Take>
+auto take_message(std::string_view message, Kind kind, const std::string& place, Take take) {
+    const auto fail = [&](const std::string& expected, const std::string& found) {
         throw Error({.kind = ErrorKind::mesher,
-                     .place = place_,
+                     .place = place,
                      .expected = expected,
                      .found = found,
                      .advice = "cellproj and cellproj-mesher must be of the same version"});
-    }
-
-    template <class T>
-    T value(const char* what) {
-        return array<T>(1, what).front();
-    }
-
-    template <class T>
-    std::vector<T> array(std::uint64_t count, const char* what) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        // Compared by division: a count from outside may overflow when multiplied.
-        if (count > bytes_.size() / sizeof(T)) {
-            fail(std::to_string(count) + " × " + std::to_string(sizeof(T)) + " bytes of " + what,
-                 std::to_string(bytes_.size()) + " bytes");
-        }
-        std::vector<T> numbers(static_cast<std::size_t>(count));
-        if (count > 0) std::memcpy(numbers.data(), bytes_.data(), numbers.size() * sizeof(T));
-        bytes_.remove_prefix(numbers.size() * sizeof(T));
-        return numbers;
-    }
-
-    std::string text(const char* what) {
-        const auto letters = array<char>(value<std::uint64_t>("length"), what);
-        return {letters.begin(), letters.end()};
-    }
-
-    void header(Kind expected) {
-        const std::string_view start = bytes_.substr(0, magic.size());
-        if (start != magic)
-            fail("a message that starts with \"cpmesher\"", std::to_string(bytes_.size()) + " other bytes");
-        bytes_.remove_prefix(magic.size());
-        if (const auto v = value<std::uint32_t>("version"); v != version) {
-            fail("version " + std::to_string(version) + " of the exchange format", "version " + std::to_string(v));
-        }
-        if (const auto kind = value<std::uint32_t>("kind"); kind != static_cast<std::uint32_t>(expected)) {
-            fail(in_words(expected), "kind " + std::to_string(kind));
-        }
-        if (const auto size = value<std::uint64_t>("body size"); size != bytes_.size()) {
-            fail("a body of " + std::to_string(size) + " bytes", std::to_string(bytes_.size()) + " bytes");
-        }
-    }
-
-    void end() const {
-        if (!bytes_.empty()) fail("the end of the message", std::to_string(bytes_.size()) + " more bytes");
-    }
-
-private:
-    std::string_view bytes_;
-    const std::string& place_;
-};
+    };
+    if (!message.starts_with(magic))
+        fail("a message that starts with \"cpmesher\"", std::to_string(message.size()) + " other bytes");
+    ByteReader reader(message.substr(magic.size()), fail);
+    if (const auto found = reader.value<std::uint32_t>("version"); found != version)
+        fail("version " + std::to_string(version) + " of the exchange format", "version " + std::to_string(found));
+    if (const auto found = reader.value<Kind>("kind"); found != kind)
+        fail(in_words(kind), "kind " + std::to_string(static_cast<std::uint32_t>(found)));
+    if (const auto size = reader.value<std::uint64_t>("body size"); size != reader.left())
+        fail("a body of " + std::to_string(size) + " bytes", std::to_string(reader.left()) + " bytes");
+    auto result = take(reader);
+    if (reader.left() > 0) fail("the end of the message", std::to_string(reader.left()) + " more bytes");
+    return result;
+}
 
 bool finite(const glm::dvec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
-// All polygons in two arrays.
-struct FlatPolygons {
-    std::vector<std::uint32_t> sizes;
-    std::vector<VertexId> vertices;
-};
-
-FlatPolygons flatten(const std::vector<std::vector<VertexId>>& polygons) {
-    FlatPolygons flat;
-    for (const std::vector<VertexId>& polygon : polygons) {
-        flat.sizes.push_back(static_cast<std::uint32_t>(polygon.size()));
-        flat.vertices.insert(flat.vertices.end(), polygon.begin(), polygon.end());
-    }
-    return flat;
-}
-
-std::vector<std::vector<VertexId>> split_facets(const std::vector<std::uint32_t>& sizes,
-                                                const std::vector<VertexId>& vertices, const Reader& reader) {
-    std::vector<std::vector<VertexId>> facets;
-    facets.reserve(sizes.size());
-    std::size_t first = 0;
-    for (const std::size_t size : sizes) {
-        if (size > vertices.size() - first)
-            reader.fail("facet sizes that add up", "more facet vertices than were sent");
-        const auto begin = vertices.begin() + static_cast<std::ptrdiff_t>(first);
-        facets.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(size));
-        first += size;
-    }
-    if (first != vertices.size()) reader.fail("facet sizes that add up", "fewer facet vertices than were sent");
-    return facets;
 }
 
 const Field* region_field(const TetMesh& mesh) {
@@ -222,70 +137,50 @@ void validate(const PiecewiseLinearComplex& complex, const std::string& place) {
 }
 
 std::string encode_request(const PiecewiseLinearComplex& complex, double max_volume, double radius_edge_ratio) {
-    const auto [sizes, vertices] = flatten(complex.facets);
-    Writer writer;
-    writer.value(max_volume);
-    writer.value(radius_edge_ratio);
-    writer.value(std::uint64_t{complex.points.size()});
-    writer.value(std::uint64_t{sizes.size()});
-    writer.value(std::uint64_t{vertices.size()});
-    writer.value(std::uint64_t{complex.holes.size()});
-    writer.value(std::uint64_t{complex.regions.size()});
-    writer.array(complex.points);
-    writer.array(sizes);
-    writer.array(vertices);
-    writer.array(complex.holes);
-    writer.array(complex.regions);
-    return writer.message(Kind::request);
+    return make_message(Kind::request, [&](ByteWriter& writer) {
+        writer.value(max_volume);
+        writer.value(radius_edge_ratio);
+        writer.array(complex.points);
+        writer.lists(complex.facets);
+        writer.array(complex.holes);
+        writer.array(complex.regions);
+    });
 }
 
 MeshingRequest decode_request(std::string_view message, const std::string& place) {
-    Reader reader(message, place);
-    reader.header(Kind::request);
-    MeshingRequest request;
-    request.max_volume = reader.value<double>("largest volume");
-    request.radius_edge_ratio = reader.value<double>("radius-edge ratio");
-    const auto counts = reader.array<std::uint64_t>(5, "counts");
-    request.complex.points = reader.array<glm::dvec3>(counts[0], "points");
-    const auto sizes = reader.array<std::uint32_t>(counts[1], "facet sizes");
-    const auto vertices = reader.array<VertexId>(counts[2], "facet vertices");
-    request.complex.facets = split_facets(sizes, vertices, reader);
-    request.complex.holes = reader.array<glm::dvec3>(counts[3], "holes");
-    request.complex.regions = reader.array<Region>(counts[4], "regions");
-    reader.end();
-    return request;
+    return take_message(message, Kind::request, place, [](ByteReader& reader) {
+        MeshingRequest request;
+        request.max_volume = reader.value<double>("largest volume");
+        request.radius_edge_ratio = reader.value<double>("radius-edge ratio");
+        request.complex.points = reader.array<glm::dvec3>("points");
+        request.complex.facets = reader.lists<VertexId>("facets");
+        request.complex.holes = reader.array<glm::dvec3>("holes");
+        request.complex.regions = reader.array<Region>("regions");
+        return request;
+    });
 }
 
 std::string encode_request(const SurfaceRequest& request) {
-    const auto [sizes, vertices] = flatten(request.surface.polygons);
-    Writer writer;
-    writer.value(request.max_volume);
-    writer.value(request.radius_edge_ratio);
-    writer.value(std::uint64_t{request.fill_holes});
-    writer.value(std::uint64_t{request.surface.points.size()});
-    writer.value(std::uint64_t{sizes.size()});
-    writer.value(std::uint64_t{vertices.size()});
-    writer.array(request.surface.points);
-    writer.array(sizes);
-    writer.array(vertices);
-    return writer.message(Kind::surface_request);
+    return make_message(Kind::surface_request, [&](ByteWriter& writer) {
+        writer.value(request.max_volume);
+        writer.value(request.radius_edge_ratio);
+        writer.value(std::uint64_t{request.fill_holes});
+        writer.array(request.surface.points);
+        writer.lists(request.surface.polygons);
+    });
 }
 
 SurfaceRequest decode_surface_request(std::string_view message, const std::string& place) {
-    Reader reader(message, place);
-    reader.header(Kind::surface_request);
-    SurfaceRequest request;
-    request.surface.name = place;
-    request.max_volume = reader.value<double>("largest volume");
-    request.radius_edge_ratio = reader.value<double>("radius-edge ratio");
-    const auto counts = reader.array<std::uint64_t>(4, "counts");
-    request.fill_holes = counts[0] != 0;
-    request.surface.points = reader.array<glm::dvec3>(counts[1], "points");
-    const auto sizes = reader.array<std::uint32_t>(counts[2], "polygon sizes");
-    const auto vertices = reader.array<VertexId>(counts[3], "polygon vertices");
-    request.surface.polygons = split_facets(sizes, vertices, reader);
-    reader.end();
-    return request;
+    return take_message(message, Kind::surface_request, place, [&](ByteReader& reader) {
+        SurfaceRequest request;
+        request.surface.name = place;
+        request.max_volume = reader.value<double>("largest volume");
+        request.radius_edge_ratio = reader.value<double>("radius-edge ratio");
+        request.fill_holes = reader.value<std::uint64_t>("choice to fill holes") != 0;
+        request.surface.points = reader.array<glm::dvec3>("points");
+        request.surface.polygons = reader.lists<VertexId>("polygons");
+        return request;
+    });
 }
 
 bool is_surface_request(std::string_view message) {
@@ -297,51 +192,44 @@ bool is_refusal(std::string_view message) {
 }
 
 std::string encode_refusal(const Error& error) {
-    Writer writer;
-    writer.text(error.expected());
-    writer.text(error.found());
-    writer.text(error.advice());
-    return writer.message(Kind::refusal);
+    return make_message(Kind::refusal, [&](ByteWriter& writer) {
+        writer.text(error.expected());
+        writer.text(error.found());
+        writer.text(error.advice());
+    });
 }
 
 Error decode_refusal(std::string_view message, const std::string& place, const std::string& subject) {
-    Reader reader(message, place);
-    reader.header(Kind::refusal);
-    ErrorParts parts{.kind = ErrorKind::data, .place = subject, .expected = {}, .found = {}, .advice = {}};
-    parts.expected = reader.text("expectation");
-    parts.found = reader.text("finding");
-    parts.advice = reader.text("advice");
-    reader.end();
-    return Error(parts);
+    return take_message(message, Kind::refusal, place, [&](ByteReader& reader) {
+        ErrorParts parts{.kind = ErrorKind::data, .place = subject, .expected = {}, .found = {}, .advice = {}};
+        parts.expected = reader.text("expectation");
+        parts.found = reader.text("finding");
+        parts.advice = reader.text("advice");
+        return Error(parts);
+    });
 }
 
 std::string encode_answer(const TetMesh& mesh) {
     static const std::vector<double> none;
     const Field* region = region_field(mesh);
-    const std::vector<double>& attributes = region ? region->values : none;
-    Writer writer;
-    writer.value(std::uint64_t{mesh.points.size()});
-    writer.value(std::uint64_t{mesh.tets.size()});
-    writer.value(std::uint64_t{attributes.size()});
-    writer.array(mesh.points);
-    writer.array(mesh.tets);
-    writer.array(attributes);
-    return writer.message(Kind::answer);
+    return make_message(Kind::answer, [&](ByteWriter& writer) {
+        writer.array(mesh.points);
+        writer.array(mesh.tets);
+        writer.array(region ? region->values : none);
+    });
 }
 
 TetMesh decode_answer(std::string_view message, const std::string& place) {
-    Reader reader(message, place);
-    reader.header(Kind::answer);
-    TetMesh mesh;
-    const auto counts = reader.array<std::uint64_t>(3, "counts");
-    mesh.points = reader.array<glm::dvec3>(counts[0], "points");
-    mesh.tets = reader.array<std::array<VertexId, 4>>(counts[1], "tets");
-    if (counts[2] != 0) {
-        if (counts[2] != counts[1]) reader.fail("one region attribute per cell", std::to_string(counts[2]));
-        mesh.cell_fields.push_back({"region", 1, reader.array<double>(counts[2], "region attributes")});
-    }
-    reader.end();
-    return mesh;
+    return take_message(message, Kind::answer, place, [](ByteReader& reader) {
+        TetMesh mesh;
+        mesh.points = reader.array<glm::dvec3>("points");
+        mesh.tets = reader.array<std::array<VertexId, 4>>("tets");
+        std::vector<double> attributes = reader.array<double>("region attributes");
+        if (!attributes.empty() && attributes.size() != mesh.tets.size())
+            reader.fail("one region attribute per cell", std::to_string(attributes.size()));
+        if (!attributes.empty()) mesh.cell_fields.push_back({"region", 1, std::move(attributes)});
+        return mesh;
+    });
 }
 
 std::optional<std::size_t> announced_answer_size(std::string_view start) {

@@ -4,17 +4,16 @@
 // file; it knows nothing of how the other side makes its cells.
 //
 //   message := header, body
-//   header  := magic "cpmesher" (8 bytes), u32 version = 2, u32 kind (1 request, 2 answer, 3 surface request, 4 refusal),
+//   header  := magic "cpmesher" (8 bytes), u32 version = 3, u32 kind (1 request, 2 answer, 3 surface request, 4 refusal),
 //              u64 size of the body
-//   [bytes] request := f64 max_volume, f64 radius_edge_ratio, u64 #P, u64 #F, u64 #V, u64 #H, u64 #R,
-//              #P points (3 f64), #F facet sizes (u32, their sum is #V), #V facet vertices (u32, 0-based, facet after
-//              facet), #H holes (3 f64), #R regions (3 f64 seed, f64 attribute, f64 max_volume)
-//   answer  := u64 #P, u64 #T, u64 #A (0 or #T), #P points (3 f64), #T tets (4 u32, 0-based), #A region attributes
-//   (f64)
-//   surface request := f64 max_volume, f64 radius_edge_ratio, u64 fill_holes (0 or 1), u64 #P, u64 #F, u64 #V, #P points,
-//              #F polygon sizes (u32), #V polygon vertices (u32)
-//   refusal := what was expected, what was found, what to do: three times u64 length, UTF-8 text. The answer to a surface
-//              that cannot be made a closed boundary.
+//   request := f64 max_volume, f64 radius_edge_ratio, points, facets, holes (points), regions (3 f64 seed, f64 attribute,
+//              f64 max_volume each)
+//   answer  := points, tets (4 u32, 0-based, each), region attributes (f64; none or one per tet)
+//   surface request := f64 max_volume, f64 radius_edge_ratio, u64 fill_holes (0 or 1), points, polygons
+//   refusal := what was expected, what was found, what to do: UTF-8 texts. The answer to a surface that cannot be made a
+//              closed boundary.
+//   points: 3 f64 each. Facets and polygons: the sizes of all (u32), then the vertices of all (u32, 0-based). Every array
+//   and text stands behind its length, u64 (byte_stream.hpp).
 //
 // Numbers stand in the byte order of the machine, on which both programs run. Nothing follows the body.
 #pragma once

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ struct ReadOptions {
     std::vector<std::string> blocks =
         {};                           // the blocks to read, by name or by the first or last parts of it; empty: all
     std::optional<double> time = {};  // the nearest time step is read; none: the last
+    // Told how much VTK's reader has read, 0 to 1, while `read` is under way, on its thread; it may start again with each
+    // part of a file. Not for the formats that need no VTK.
+    std::function<void(double fraction)> progress = {};
 };
 
 // Reads
@@ -34,11 +38,14 @@ struct ReadOptions {
 // - TetGen, Gmsh, Medit and SU2 (text_formats.hpp).
 // The format is told by content first and by the file's suffix second. Structured, rectilinear and image grids become
 // curvilinear ones. All volume blocks of a file become one mesh, points unmerged and with NaN where a block lacks a
-// field; other blocks and other cells are skipped and counted. VTK's own messages are caught, not printed; reads in
-// several threads wait for each other. EnSight, Exodus, CGNS, MetaImage and NRRD files are read twice, first in a child
-// process, as VTK's readers of these may crash on damaged ones. Throws Error:
+// field; other blocks and other cells are skipped and counted. VTK's readers run in a child process each (a fork of
+// this one), since damaged files make them crash, hang or ask for all memory: this, too, gives an Error, and VTK's
+// messages are caught, not printed. isolated_read.hpp says what limits of time and memory the child has and what that
+// means for a program of several threads. Throws Error:
+// - environment: no child process to be had;
 // - file: missing, a folder that is no case, unreadable;
-// - format: not recognised, truncated, malformed, a part of it (a piece, a file of the case) missing;
+// - format: not recognised, truncated, malformed, beyond the child's limits, a part of it (a piece, a file of the case)
+//   missing;
 // - data: no volume cells, cells of an unsupported kind, grids with one point in a direction, points that are not
 // finite,
 //   vertex ids out of range, a solution of another size;

@@ -2,13 +2,21 @@
 //
 // Results of solvers in several files or blocks: OpenFOAM, EnSight Gold, Exodus II and CGNS.
 #include <vtkCGNSReader.h>
+#include <vtkCellData.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataSet.h>
 #include <vtkDummyController.h>
 #include <vtkExodusIIReader.h>
 #include <vtkGenericEnSightReader.h>
 #include <vtkNew.h>
 #include <vtkPOpenFOAMReader.h>
+#include <vtkPointData.h>
+#include <vtkSmartPointer.h>
 
+#include <set>
 #include <stdexcept>
+#include <string>
 
 #include "mesh/error.hpp"
 #include "mesh/vtk_conversion.hpp"
@@ -34,8 +42,12 @@ fs::path name_in_case(const fs::path& folder) {
     return folder / "case.foam";
 }
 
+fs::path processor_folder(const fs::path& folder, int number) {
+    return folder / ("processor" + std::to_string(number));
+}
+
 bool is_decomposed(const fs::path& folder) {
-    return !fs::exists(folder / "constant" / "polyMesh") && fs::is_directory(folder / "processor0");
+    return !fs::exists(folder / "constant" / "polyMesh") && fs::is_directory(processor_folder(folder, 0));
 }
 
 // Binary files say how wide their numbers are: arch "LSB;label=32;scalar=64".
@@ -94,10 +106,58 @@ Dataset read_openfoam(const fs::path& file, const ReadOptions& options) {
         reader->UpdateInformation();
         select_volumes(*reader);
     });
-    return read_blocks(*reader, file, decomposed ? "OpenFOAM case, decomposed" : "OpenFOAM case", options);
+    Dataset dataset =
+        read_blocks(*reader, file, decomposed ? "OpenFOAM case, decomposed" : "OpenFOAM case", options);
+    if (!dataset.time) return dataset;
+    if (!decomposed) require_whole_openfoam_fields(folder, *dataset.time, file);
+    for (int processor = 0; decomposed && fs::exists(processor_folder(folder, processor)); ++processor)
+        require_whole_openfoam_fields(processor_folder(folder, processor), *dataset.time, file);
+    return dataset;
 }
 
 // ---- EnSight Gold ----
+
+namespace {
+
+// The names of all arrays on points and cells in a tree of blocks.
+std::set<std::string> array_names(vtkDataObject* data) {
+    std::set<std::string> names;
+    auto* tree = vtkCompositeDataSet::SafeDownCast(data);
+    if (!tree) return names;
+    const auto blocks = vtkSmartPointer<vtkCompositeDataIterator>::Take(tree->NewIterator());
+    for (blocks->InitTraversal(); !blocks->IsDoneWithTraversal(); blocks->GoToNextItem()) {
+        auto* block = vtkDataSet::SafeDownCast(blocks->GetCurrentDataObject());
+        if (!block) continue;
+        for (vtkDataSetAttributes* attributes :
+             {static_cast<vtkDataSetAttributes*>(block->GetPointData()),
+              static_cast<vtkDataSetAttributes*>(block->GetCellData())}) {
+            for (int i = 0; i < attributes->GetNumberOfArrays(); ++i) {
+                if (const char* name = attributes->GetArrayName(i)) names.insert(name);
+            }
+        }
+    }
+    return names;
+}
+
+// VTK's reader leaves a variable out when its file is missing or cut off.
+void require_all_variables(vtkGenericEnSightReader& reader, const fs::path& file) {
+    const std::set<std::string> present = array_names(reader.GetOutputDataObject(0));
+    const auto require = [&](const char* name) {
+        if (!name || present.contains(name)) return;
+        throw Error({.kind = ErrorKind::format,
+                     .place = file.string() + ", variable \"" + name + "\"",
+                     .expected = "its values in the file that the case names",
+                     .found = "none that VTK's reader takes",
+                     .advice = "that file may be missing or cut off: write or copy it again, or remove the variable "
+                               "from the case"});
+    };
+    for (int i = 0; i < reader.GetNumberOfPointArrays(); ++i)
+        require(reader.GetPointArrayName(i));
+    for (int i = 0; i < reader.GetNumberOfCellArrays(); ++i)
+        require(reader.GetCellArrayName(i));
+}
+
+}  // namespace
 
 Dataset read_ensight(const fs::path& file, const ReadOptions& options) {
     const fs::path folder = fs::absolute(file).parent_path();
@@ -105,12 +165,19 @@ Dataset read_ensight(const fs::path& file, const ReadOptions& options) {
     reader->SetFilePath((folder.string() + "/").c_str());
     reader->SetCaseFileName(file.filename().c_str());
     reader->ReadAllVariablesOn();
-    return read_blocks(*reader, file, "EnSight Gold", options);
+    const TimeSteps steps = choose_time(*reader, file, options.time);
+    update(*reader, file);
+    require_all_variables(*reader, file);
+    Dataset dataset = blocks_to_dataset(*reader->GetOutputDataObject(0), file, "EnSight Gold", options.blocks);
+    dataset.times = steps.all;
+    dataset.time = steps.read;
+    return dataset;
 }
 
 // ---- Exodus II ----
 
 Dataset read_exodus(const fs::path& file, const ReadOptions& options) {
+    require_whole_netcdf(file);
     vtkNew<vtkExodusIIReader> reader;
     reader->SetFileName(file.c_str());
     capture_errors(file, [&] {

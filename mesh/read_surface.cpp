@@ -18,6 +18,7 @@
 
 #include "mesh/error.hpp"
 #include "mesh/file_bytes.hpp"
+#include "mesh/isolated_read.hpp"
 #include "mesh/surface.hpp"
 #include "mesh/vtk_conversion.hpp"
 
@@ -155,29 +156,24 @@ Surface read_vtp(const fs::path& file) {
     return surface;
 }
 
+Surface read_with_vtk(Format format, const fs::path& file) {
+    use_one_thread();
+    if (format == Format::vtp) return read_vtp(file);
+    if (format != Format::obj) return read_stl(file);
+    vtkNew<vtkOBJReader> reader;
+    return read_with(*reader, file);
+}
+
 }  // namespace
 
 Surface read_surface(const fs::path& file) {
     require_readable(file);
-    switch (format_of(file)) {
-        case Format::stl_ascii:
-            require_stl_end(file);
-            return read_stl(file);
-        case Format::stl_binary:
-            require_whole_stl(file);
-            return read_stl(file);
-        case Format::off:
-            return read_off(file);
-        case Format::ply:
-            return read_ply(file);
-        case Format::obj: {
-            vtkNew<vtkOBJReader> reader;
-            return read_with(*reader, file);
-        }
-        case Format::vtp:
-            break;
-    }
-    return read_vtp(file);
+    const Format format = format_of(file);
+    if (format == Format::off) return read_off(file);
+    if (format == Format::ply) return read_ply(file);
+    if (format == Format::stl_ascii) require_stl_end(file);
+    if (format == Format::stl_binary) require_whole_stl(file);
+    return read_isolated(file, fs::file_size(file), {}, [&] { return read_with_vtk(format, file); });
 }
 
 }  // namespace cellproj

@@ -2,7 +2,7 @@
 #include <system_error>
 
 #include "mesh/error.hpp"
-#include "mesh/trial_read.hpp"
+#include "mesh/isolated_read.hpp"
 #include "mesh/vtk_conversion.hpp"
 #include "mesh/vtk_readers.hpp"
 
@@ -43,30 +43,54 @@ Dataset read_family(FileFormat format, const std::filesystem::path& file, const 
                  .advice = "use the reader of that format"});
 }
 
-// These crash, hang, end the process or print to the terminal when a file is cut off.
-bool is_fragile(FileFormat format) {
-    return format == FileFormat::ensight || format == FileFormat::cgns || format == FileFormat::meta_image ||
-           format == FileFormat::nrrd || format == FileFormat::exodus;
+// Formats whose file names others beside or below it.
+bool names_other_files(FileFormat format, const std::filesystem::path& file) {
+    switch (format) {
+        case FileFormat::vtk_xml:
+            return is_vtk_xml_index(file);
+        case FileFormat::plot3d:
+        case FileFormat::openfoam:
+        case FileFormat::ensight:
+        case FileFormat::cgns:
+        case FileFormat::meta_image:
+        case FileFormat::nrrd:
+            return true;
+        default:
+            return false;
+    }
 }
 
-// Of a file and of all others in its folder, which may be its parts.
-std::uintmax_t folder_bytes(const std::filesystem::path& file) {
+// Of all files in a folder and below it, any of which may be part of what is read. Ends somewhere in very large folders.
+std::uintmax_t folder_bytes(const std::filesystem::path& folder) {
+    constexpr int most_entries = 20000;
     std::uintmax_t bytes = 0;
+    int entries = 0;
     std::error_code error;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::filesystem::absolute(file).parent_path(), error)) {
-        if (entry.is_regular_file(error)) bytes += entry.file_size(error);
+    using Iterator = std::filesystem::recursive_directory_iterator;
+    const auto options = std::filesystem::directory_options::skip_permission_denied;
+    for (Iterator entry(folder, options, error); !error && entry != Iterator() && entries < most_entries;
+         entry.increment(error), ++entries) {
+        std::error_code no_size;
+        if (entry->is_regular_file(no_size)) bytes += entry->file_size(no_size);
     }
     return bytes;
+}
+
+std::uintmax_t bytes_to_read(FileFormat format, const std::filesystem::path& file) {
+    if (std::filesystem::is_directory(file)) return folder_bytes(file);
+    if (names_other_files(format, file)) return folder_bytes(std::filesystem::absolute(file).parent_path());
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+    return error ? 0 : bytes;
 }
 
 }  // namespace
 
 Dataset read_with_vtk(FileFormat format, const std::filesystem::path& file, const ReadOptions& options) {
-    if (is_fragile(format)) {
-        require_harmless(file, folder_bytes(file), [&] { read_family(format, file, options); });
-    }
-    return read_family(format, file, options);
+    return read_isolated(file, bytes_to_read(format, file), options.progress, [&] {
+        use_one_thread();
+        return read_family(format, file, options);
+    });
 }
 
 }  // namespace cellproj

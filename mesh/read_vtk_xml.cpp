@@ -12,6 +12,7 @@
 #include <array>
 #include <cctype>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "mesh/error.hpp"
@@ -144,11 +145,23 @@ vtkSmartPointer<vtkDataObject> load(const fs::path& file) {
                  .advice = "the file may be damaged: write it again"});
 }
 
+// Told about the collection: the name in it may be what is damaged.
+void require_existing(const Entry& entry, const fs::path& collection) {
+    std::error_code unknown;
+    if (fs::exists(entry.file, unknown)) return;
+    throw Error({.kind = ErrorKind::file,
+                 .place = collection.string() + ", the file " + printable(entry.file.string()),
+                 .expected = "a file",
+                 .found = "none of that name",
+                 .advice = "put it there, or name the right one in the collection"});
+}
+
 // The parts of a collection at one time as a tree, each under its name; a single one as it is.
-vtkSmartPointer<vtkDataObject> load_parts(const std::vector<Entry>& entries, double time) {
+vtkSmartPointer<vtkDataObject> load_parts(const fs::path& file, const std::vector<Entry>& entries, double time) {
     vtkNew<vtkMultiBlockDataSet> parts;
     for (const Entry& entry : entries) {
         if (entry.time != time) continue;
+        require_existing(entry, file);
         const unsigned int part = parts->GetNumberOfBlocks();
         parts->SetBlock(part, load(entry.file));
         parts->GetMetaData(part)->Set(vtkCompositeDataSet::NAME(), entry.part.c_str());
@@ -162,7 +175,7 @@ Dataset read_collection(const fs::path& file, const ReadOptions& options) {
     const std::vector<Entry> entries = read_entries(file);
     const std::vector<double> times = times_of(entries);
     const double time = times[nearest_time(times, options.time)];
-    const vtkSmartPointer<vtkDataObject> data = load_parts(entries, time);
+    const vtkSmartPointer<vtkDataObject> data = load_parts(file, entries, time);
     Dataset dataset = blocks_to_dataset(*data, file, "VTK XML collection", options.blocks);
     dataset.times = times;
     dataset.time = time;
@@ -170,6 +183,11 @@ Dataset read_collection(const fs::path& file, const ReadOptions& options) {
 }
 
 }  // namespace
+
+bool is_vtk_xml_index(const fs::path& file) {
+    const std::string type = xml_dataset_type(file);
+    return type == "Collection" || (type.starts_with('P') && type != "PolyData") || type.starts_with("vtk");
+}
 
 Dataset read_vtk_xml(const fs::path& file, const ReadOptions& options) {
     const std::string type = xml_dataset_type(file);

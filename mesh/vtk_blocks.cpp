@@ -29,6 +29,7 @@ namespace fs = std::filesystem;
 struct Leaf {
     std::string name;  // its path in the tree
     vtkDataSet* data;
+    bool volume = false;  // to be asked once: conversion empties it
 };
 
 // Pieces of one dataset (what a partitioned file or a parallel run makes of it) share the name of the whole.
@@ -40,26 +41,6 @@ bool are_pieces(const vtkDataObjectTree& tree) {
 std::string without_padding(std::string text) {
     text.erase(text.find_last_not_of(" \t\r\n") + 1);
     return text;
-}
-
-void collect_leaves(vtkDataObject* data, const std::string& name, std::vector<Leaf>& leaves) {
-    if (auto* leaf = vtkDataSet::SafeDownCast(data)) leaves.push_back({name, leaf});
-    auto* tree = vtkDataObjectTree::SafeDownCast(data);
-    if (!tree) return;
-    const auto children = vtkSmartPointer<vtkDataObjectTreeIterator>::Take(tree->NewTreeIterator());
-    children->TraverseSubTreeOff();
-    children->VisitOnlyLeavesOff();
-    children->SkipEmptyNodesOff();
-    std::size_t number = 0;
-    for (children->InitTraversal(); !children->IsDoneWithTraversal(); children->GoToNextItem(), ++number) {
-        const char* label =
-            children->HasCurrentMetaData() ? children->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME()) : nullptr;
-        std::string own = without_padding(label ? label : "");
-        if (own.empty()) own = "block " + std::to_string(number);
-        if (are_pieces(*tree) && !name.empty()) own.clear();
-        const bool nested = !name.empty() && !own.empty();
-        collect_leaves(children->GetCurrentDataObject(), nested ? name + "/" + own : name + own, leaves);
-    }
 }
 
 bool is_volume_type(int vtk_type) {
@@ -80,6 +61,26 @@ bool is_volume(vtkDataSet& data) {
         if (present[static_cast<std::size_t>(type)] && is_volume_type(type)) return true;
     }
     return false;
+}
+
+void collect_leaves(vtkDataObject* data, const std::string& name, std::vector<Leaf>& leaves) {
+    if (auto* leaf = vtkDataSet::SafeDownCast(data)) leaves.push_back({name, leaf, is_volume(*leaf)});
+    auto* tree = vtkDataObjectTree::SafeDownCast(data);
+    if (!tree) return;
+    const auto children = vtkSmartPointer<vtkDataObjectTreeIterator>::Take(tree->NewTreeIterator());
+    children->TraverseSubTreeOff();
+    children->VisitOnlyLeavesOff();
+    children->SkipEmptyNodesOff();
+    std::size_t number = 0;
+    for (children->InitTraversal(); !children->IsDoneWithTraversal(); children->GoToNextItem(), ++number) {
+        const char* label =
+            children->HasCurrentMetaData() ? children->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME()) : nullptr;
+        std::string own = without_padding(label ? label : "");
+        if (own.empty()) own = "block " + std::to_string(number);
+        if (are_pieces(*tree) && !name.empty()) own.clear();
+        const bool nested = !name.empty() && !own.empty();
+        collect_leaves(children->GetCurrentDataObject(), nested ? name + "/" + own : name + own, leaves);
+    }
 }
 
 Dataset leaf_to_dataset(vtkDataSet& data, const fs::path& place, const std::string& format) {
@@ -117,7 +118,7 @@ Dataset blocks_to_dataset(vtkDataObject& data, const fs::path& file, const std::
     std::size_t skipped_blocks = 0;
     std::size_t skipped_cells = 0;
     for (const Leaf& leaf : leaves) {
-        if (is_volume(*leaf.data)) {
+        if (leaf.volume) {
             add_name(names, leaf.name);
         } else {
             ++skipped_blocks;
@@ -134,7 +135,7 @@ Dataset blocks_to_dataset(vtkDataObject& data, const fs::path& file, const std::
     require_known_blocks(wanted, names, file);
     std::vector<Dataset> blocks;
     for (const Leaf& leaf : leaves) {
-        if (!is_volume(*leaf.data) || !is_chosen(leaf.name, wanted)) continue;
+        if (!leaf.volume || !is_chosen(leaf.name, wanted)) continue;
         blocks.push_back(leaf_to_dataset(*leaf.data, file.string() + ", block " + leaf.name, format));
         blocks.back().source = file.string();
     }

@@ -2,6 +2,8 @@
 #include "mesh/vtk_conversion.hpp"
 
 #include <vtkAlgorithm.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
@@ -13,8 +15,10 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <new>
 
 #include "mesh/error.hpp"
+#include "mesh/isolated_read.hpp"
 
 namespace cellproj {
 
@@ -105,6 +109,8 @@ void capture_errors(const std::filesystem::path& file, const std::function<void(
     const CapturedMessages messages;
     try {
         work();
+    } catch (const std::bad_alloc&) {
+        throw;  // told by the child process in which this happens (isolated_read.hpp)
     } catch (const std::exception& exception) {
         throw_unreadable(file, messages.first_error().empty() ? exception.what() : messages.first_error());
     }
@@ -112,7 +118,13 @@ void capture_errors(const std::filesystem::path& file, const std::function<void(
 }
 
 void update(vtkAlgorithm& reader, const std::filesystem::path& file) {
+    vtkNew<vtkCallbackCommand> progress;
+    progress->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+        report_progress(static_cast<vtkAlgorithm*>(caller)->GetProgress());
+    });
+    const unsigned long observer = reader.AddObserver(vtkCommand::ProgressEvent, progress);
     capture_errors(file, [&] { reader.Update(); });
+    reader.RemoveObserver(observer);
 }
 
 std::vector<glm::dvec3> to_points(vtkPoints& points, const std::filesystem::path& file) {

@@ -23,10 +23,13 @@ namespace cellproj {
 // Runs reader.Update() on `file`. VTK tells its readers' errors to the terminal and returns what it has got so far:
 // here they become Error (format) with the first message, as do the exceptions of its allocations. Nothing reaches the
 // terminal. Not reentrant; other threads wait, as VTK has one place for messages only (theirs are caught, too, while a
-// file is read).
+// file is read). Tells report_progress (isolated_read.hpp).
 void update(vtkAlgorithm& reader, const std::filesystem::path& file);
-// The same for any work with VTK's readers.
+// The same for any work with VTK's readers. std::bad_alloc is let through.
 void capture_errors(const std::filesystem::path& file, const std::function<void()>& work);
+
+// vtk_threads.cpp: VTK works on this thread only from now on: in a forked child the pool of threads it had (TBB's) is gone.
+void use_one_thread();
 
 // Throws Error (data) when there are more points than ids or one is not finite.
 std::vector<glm::dvec3> to_points(vtkPoints& points, const std::filesystem::path& file);
@@ -38,8 +41,9 @@ Field to_field(vtkDataArray& array, const std::string& name);
 
 // vtk_grid.cpp: the volume cells and the fields of a grid; `place` names it in messages, `format` is told in words. All
 // linear kinds are taken; quadratic, Lagrange and Bézier cells by their corners only, so curved edges become straight.
-// Cells marked as duplicate or hidden in vtkGhostType, or with a point marked as hidden, are left out and counted. Throws
-// Error (format) for cells that do not fit their lists, Error (data) for other kinds and for point ids out of range.
+// Cells marked as duplicate or hidden in vtkGhostType, or with a point marked as hidden, are left out and counted. The grid
+// is emptied on the way, so that little is held twice. Throws Error (format) for cells that do not fit their lists, Error
+// (data) for other kinds and for point ids out of range.
 Dataset to_dataset(vtkUnstructuredGrid& grid, const std::filesystem::path& place, const std::string& format);
 
 // legacy_cells.cpp: VTK's legacy reader follows the vertex counts of the cells without a look at how long the list is,

@@ -7,6 +7,7 @@
 #include <vtkDataArray.h>
 #include <vtkGenericCell.h>
 #include <vtkIdTypeArray.h>
+#include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
@@ -14,6 +15,7 @@
 
 #include <cctype>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -155,7 +157,7 @@ void require_rows(vtkDataArray& array, const std::string& name, vtkIdType rows, 
 
 struct VolumeCells {
     CellList cells;
-    std::vector<std::uint64_t> rows;  // #C: where each cell stands in the file, 0-based
+    std::vector<std::uint64_t> rows;  // #C: where each cell stands in the file, 0-based; empty when all cells are taken
     std::size_t ghosts = 0;           // volume cells left out
 };
 
@@ -179,21 +181,25 @@ private:
 // The cells of dimension 3 out of VTK's raw arrays. Nothing is followed before it has been checked.
 class VolumeCellReader {
 public:
-    VolumeCellReader(vtkUnstructuredGrid& grid, const fs::path& place)
+    // `points`: the number of them, which may be gone from the grid.
+    VolumeCellReader(vtkUnstructuredGrid& grid, vtkIdType points, const fs::path& place)
         : types_(*grid.GetCellTypesArray()),
           cells_(*grid.GetCells()),
           faces_(grid.GetFaces()),
           face_locations_(grid.GetFaceLocations()),
-          points_(grid.GetNumberOfPoints()),
+          points_(points),
           cell_marks_(*grid.GetCellData(), grid.GetNumberOfCells(), place),
           point_marks_(*grid.GetPointData(), points_, place),
           place_(place) {}
 
     VolumeCells read() {
         VolumeCells result;
-        result.cells.offsets.push_back(0);
         std::vector<VertexId>& list = result.cells.vertices;
+        // At most so many but for polyhedra; growing by doubling would hold up to three times as much.
+        result.cells.kinds.reserve(static_cast<std::size_t>(types_.GetNumberOfValues()));
+        list.reserve(static_cast<std::size_t>(cells_.GetNumberOfConnectivityIds()));
         for (cell_ = 0; cell_ < types_.GetNumberOfValues(); ++cell_) {
+            const std::size_t begin = list.size();
             const int type = types_.GetValue(cell_);
             const std::optional<KindRule> rule = rule_for(type);
             if (!rule) continue;
@@ -209,13 +215,18 @@ public:
                 }
             }
             if (hidden_) {
-                list.resize(result.cells.offsets.back());
+                list.resize(begin);
                 ++result.ghosts;
                 continue;
             }
-            result.rows.push_back(static_cast<std::uint64_t>(cell_));
+            // Rows are kept from the first one on that was passed over.
+            const std::size_t taken = result.cells.size();
+            if (taken != static_cast<std::size_t>(cell_) && result.rows.empty()) {
+                result.rows.resize(taken);
+                std::iota(result.rows.begin(), result.rows.end(), std::uint64_t{0});
+            }
+            if (taken != static_cast<std::size_t>(cell_)) result.rows.push_back(static_cast<std::uint64_t>(cell_));
             result.cells.kinds.push_back(rule->kind);
-            result.cells.offsets.push_back(list.size());
         }
         return result;
     }
@@ -302,7 +313,26 @@ private:
     bool hidden_ = false;  // whether it is
 };
 
-VolumeCells read_cells(vtkUnstructuredGrid& grid, const fs::path& place) {
+// How many entries of the list the cell that starts there has.
+std::size_t entries_of(CellKind kind, const VertexId* first) {
+    if (kind != CellKind::polyhedron) return vertex_count(kind);
+    std::size_t entries = 1;
+    for (VertexId face = 0; face < *first; ++face)
+        entries += 1 + first[entries];
+    return entries;
+}
+
+// Made when VTK's own lists are gone: 8 bytes per cell.
+void add_offsets(CellList& cells) {
+    cells.offsets.reserve(cells.size() + 1);
+    cells.offsets.push_back(0);
+    for (const CellKind kind : cells.kinds) {
+        const std::uint64_t begin = cells.offsets.back();
+        cells.offsets.push_back(begin + entries_of(kind, cells.vertices.data() + begin));
+    }
+}
+
+VolumeCells read_cells(vtkUnstructuredGrid& grid, vtkIdType points, const fs::path& place) {
     vtkUnsignedCharArray* types = grid.GetCellTypesArray();
     vtkCellArray* cells = grid.GetCells();
     require_supported_kinds(types ? count_types(*types) : TypeCounts(), place);
@@ -313,23 +343,25 @@ VolumeCells read_cells(vtkUnstructuredGrid& grid, const fs::path& place) {
                      .found = std::to_string(cells ? cells->GetNumberOfCells() : 0),
                      .advice = "the file is damaged: write it again"});
     }
-    return VolumeCellReader(grid, place).read();
+    return VolumeCellReader(grid, points, place).read();
 }
 
 // ---- Unstructured grids ----
 
-// The numeric arrays of `attributes`, converted by `convert(array, name)`; texts and ghost marks are left out.
+// The numeric arrays of `attributes`, converted by `convert(array, name)` and removed one after the other, so that few of
+// them are held twice; texts and ghost marks are left out and left where they are.
 template <class Convert>
-std::vector<Field> read_fields(vtkDataSetAttributes& attributes, vtkIdType rows, const fs::path& place,
+std::vector<Field> take_fields(vtkDataSetAttributes& attributes, vtkIdType rows, const fs::path& place,
                                Convert convert) {
     std::vector<Field> fields;
-    for (int i = 0; i < attributes.GetNumberOfArrays(); ++i) {
+    for (int i = 0, number = 0; i < attributes.GetNumberOfArrays(); ++i, ++number) {
         vtkDataArray* array = attributes.GetArray(i);
         if (!array || array->GetNumberOfComponents() < 1) continue;
-        const std::string name = array->GetName() ? array->GetName() : "unnamed " + std::to_string(i);
+        const std::string name = array->GetName() ? array->GetName() : "unnamed " + std::to_string(number);
         if (name == vtkDataSetAttributes::GhostArrayName()) continue;
         require_rows(*array, name, rows, place);
         fields.push_back(convert(*array, name));
+        attributes.RemoveArray(i--);
     }
     return fields;
 }
@@ -340,18 +372,24 @@ Dataset to_dataset(vtkUnstructuredGrid& grid, const fs::path& place, const std::
     Dataset dataset;
     dataset.source = place.string();
     dataset.format = format;
+    const vtkIdType points = grid.GetNumberOfPoints();
+    const vtkIdType cells = grid.GetNumberOfCells();
     if (grid.GetPoints()) dataset.points = to_points(*grid.GetPoints(), place);
-    VolumeCells volume = read_cells(grid, place);
+    grid.SetPoints(nullptr);
+    VolumeCells volume = read_cells(grid, points, place);
+    grid.SetCells(VTK_TETRA, vtkNew<vtkCellArray>());
+    add_offsets(volume.cells);
     dataset.cells = std::move(volume.cells);
     dataset.ghost_cells = volume.ghosts;
-    dataset.skipped_cells =
-        static_cast<std::size_t>(grid.GetNumberOfCells()) - dataset.cells.size() - dataset.ghost_cells;
+    dataset.skipped_cells = static_cast<std::size_t>(cells) - dataset.cells.size() - dataset.ghost_cells;
     dataset.point_fields =
-        read_fields(*grid.GetPointData(), grid.GetNumberOfPoints(), place,
+        take_fields(*grid.GetPointData(), points, place,
                     [](vtkDataArray& array, const std::string& name) { return to_field(array, name); });
     dataset.cell_fields =
-        read_fields(*grid.GetCellData(), grid.GetNumberOfCells(), place,
-                    [&](vtkDataArray& array, const std::string& name) { return to_field(array, name, volume.rows); });
+        take_fields(*grid.GetCellData(), cells, place, [&](vtkDataArray& array, const std::string& name) {
+            const bool all = dataset.cells.size() == static_cast<std::size_t>(cells);
+            return all ? to_field(array, name) : to_field(array, name, volume.rows);
+        });
     return dataset;
 }
 

@@ -23,10 +23,17 @@ Dataset read_with_vtk(FileFormat format, const std::filesystem::path& file, cons
 
 // One per family, all with the errors of `read`.
 Dataset read_vtk_xml(const std::filesystem::path& file, const ReadOptions& options);
+// Whether it only names the files that hold the data: a partitioned or multi-block file or a collection.
+bool is_vtk_xml_index(const std::filesystem::path& file);
 Dataset read_vtk_legacy(const std::filesystem::path& file);
 Dataset read_openfoam(const std::filesystem::path& file, const ReadOptions& options);
 Dataset read_ensight(const std::filesystem::path& file, const ReadOptions& options);
 Dataset read_exodus(const std::filesystem::path& file, const ReadOptions& options);
+// openfoam_files.cpp: throws Error (format) for a field at this time, in the case or one processor's part of it, whose file
+// is cut off. `entry`: what the user named.
+void require_whole_openfoam_fields(const std::filesystem::path& folder, double time, const std::filesystem::path& entry);
+// netcdf_size.cpp: throws Error (format) for a classic netCDF file (Exodus II) that is shorter than its header says.
+void require_whole_netcdf(const std::filesystem::path& file);
 Dataset read_cgns(const std::filesystem::path& file, const ReadOptions& options);
 Dataset read_meta_image(const std::filesystem::path& file);
 Dataset read_nrrd(const std::filesystem::path& file);

@@ -301,5 +301,15 @@ TEST(TetrahedralizeErrors, UnusableDatasetsAreRefused) {
         EXPECT_EQ(kind_of_error(single_cell(CellKind::polyhedron, cube, stream)), ErrorKind::data);
 }
 
+// The mean of such points is infinite, and an infinite point has no sign on any side.
+TEST(Tetrahedralize, ACentreThatOverflowsIsAnError) {
+    std::vector<glm::dvec3> huge;
+    for (const glm::dvec3& p : cube)
+        huge.push_back(1.5e308 * p);
+    const std::vector<VertexId> stream{6, 4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4,
+                                       4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7};
+    EXPECT_EQ(kind_of_error(single_cell(CellKind::polyhedron, huge, stream)), ErrorKind::data);
+}
+
 }  // namespace
 }  // namespace cellproj

@@ -85,8 +85,11 @@ Input load(const InputOptions& options) {
     input.name = options.file;
     const Stopwatch reading;
     Dataset dataset = [&] {
-        const Progress progress("reading " + input.name);
-        return read(options.file, {.solution = options.solution, .blocks = options.blocks, .time = options.time});
+        Progress progress("reading " + input.name);
+        return read(options.file, {.solution = options.solution,
+                                   .blocks = options.blocks,
+                                   .time = options.time,
+                                   .progress = [&](double fraction) { progress.set(fraction); }});
     }();
     input.read_ms = reading.ms();
 

@@ -26,7 +26,9 @@ void Progress::tick() {
     std::unique_lock lock(mutex_);
     int seconds = 0;
     while (!wake_.wait_for(lock, std::chrono::seconds(1), [this] { return done_; })) {
-        std::fprintf(stderr, "\r%s … %d s", what_.c_str(), ++seconds);
+        const int percent = percent_;
+        const std::string done = percent < 0 ? "" : std::to_string(percent) + " %, ";
+        std::fprintf(stderr, "\r\033[K%s … %s%d s", what_.c_str(), done.c_str(), ++seconds);
     }
     if (seconds > 0) std::fprintf(stderr, "\r\033[K");  // back to the start of the line, erased
 }

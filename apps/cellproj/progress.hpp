@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A line on the terminal while something takes longer than a second: "reading big.vtu … 4 s".
+// A line on the terminal while something takes longer than a second: "reading big.vtu … 62 %, 4 s".
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -18,10 +19,14 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
+    // How much is done, 0 to 1; not shown before it is known. From any thread.
+    void set(double fraction) { percent_ = static_cast<int>(100.0 * fraction); }
+
 private:
     void tick();
 
     std::string what_;
+    std::atomic<int> percent_{-1};
     std::mutex mutex_;
     std::condition_variable wake_;
     bool done_ = false;
