@@ -15,9 +15,7 @@ Dataset read_family(FileFormat format, const std::filesystem::path& file, const 
         case FileFormat::vtk_xml:
             return read_vtk_xml(file, options);
         case FileFormat::vtk_legacy:
-            return read_vtk_legacy(file);
-        case FileFormat::plot3d:
-            return read_plot3d(file, options.solution);
+            return read_vtk_legacy(file, options);
         case FileFormat::openfoam:
             return read_openfoam(file, options);
         case FileFormat::ensight:
@@ -30,6 +28,11 @@ Dataset read_family(FileFormat format, const std::filesystem::path& file, const 
             return read_meta_image(file);
         case FileFormat::nrrd:
             return read_nrrd(file);
+        case FileFormat::slc:
+            return read_slc(file);
+        case FileFormat::fluent:
+            return read_fluent(file, options);
+        case FileFormat::plot3d:
         case FileFormat::gmsh:
         case FileFormat::medit:
         case FileFormat::su2:
@@ -46,7 +49,8 @@ Dataset read_family(FileFormat format, const std::filesystem::path& file, const 
 // These crash, hang, end the process or print to the terminal when a file is cut off.
 bool is_fragile(FileFormat format) {
     return format == FileFormat::ensight || format == FileFormat::cgns || format == FileFormat::meta_image ||
-           format == FileFormat::nrrd || format == FileFormat::exodus;
+           format == FileFormat::nrrd || format == FileFormat::exodus || format == FileFormat::slc ||
+           format == FileFormat::fluent;
 }
 
 // Of a file and of all others in its folder, which may be its parts.

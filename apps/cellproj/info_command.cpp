@@ -3,6 +3,8 @@
 
 #include <cstdio>
 #include <memory>
+#include <sstream>
+#include <string>
 
 #include "commands.hpp"
 #include "input.hpp"
@@ -39,6 +41,25 @@ void print_times(const Input& input) {
                 input.times.back());
 }
 
+// The options without which the file is not read like this, each with a blank before it.
+std::string how_it_was_read(const InputOptions& options) {
+    std::ostringstream text;
+    if (!options.solution.empty()) text << " --q " << options.solution.string();
+    for (const std::string& block : options.blocks) text << " --block \"" << block << '"';
+    if (options.time) text << " --time " << *options.time;
+    if (options.raw_dimensions.empty()) return text.str();
+    const auto add = [&](const char* name, const auto& values) {
+        text << " --" << name;
+        for (const auto& value : values) text << ' ' << value;
+    };
+    add("dims", options.raw_dimensions);
+    text << " --type " << options.raw_type << (options.raw.big_endian ? " --big-endian" : "");
+    add("spacing", options.raw_spacing);
+    add("origin", options.raw_origin);
+    if (options.raw.header_bytes > 0) text << " --header " << options.raw.header_bytes;
+    return text.str();
+}
+
 void print_info(const InputOptions& options) {
     const Input input = load(options);
     const TetMesh& mesh = *input.mesh;
@@ -48,6 +69,7 @@ void print_info(const InputOptions& options) {
     if (input.grid) std::printf(" (%zux%zux%zu)", input.grid->ni, input.grid->nj, input.grid->nk);
     std::printf("\ncells       %s", input.cells.c_str());
     if (input.skipped_cells > 0) std::printf(" (%zu more are no volumes and are skipped)", input.skipped_cells);
+    if (input.ghost_cells > 0) std::printf(" (%zu more are hidden, blanked or copies and left out)", input.ghost_cells);
     std::printf("\ntetrahedra  %zu (%zu of zero volume, %zu turned to positive volume)\n", input.report.tets,
                 input.report.flat, input.report.flipped);
     print_blocks(input);
@@ -61,8 +83,7 @@ void print_info(const InputOptions& options) {
     print_fields(mesh, FieldLocation::cells);
     if (mesh.point_fields.empty() && mesh.cell_fields.empty()) return;
     std::printf("\nA first picture:\n  cellproj render %s%s -o picture.png --field %s\n", input.name.c_str(),
-                options.solution.empty() ? "" : (" --q " + options.solution.string()).c_str(),
-                select_scalar(mesh, "", input.name).name.c_str());
+                how_it_was_read(options).c_str(), select_scalar(mesh, "", input.name).name.c_str());
 }
 
 }  // namespace
