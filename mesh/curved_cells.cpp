@@ -153,9 +153,8 @@ VertexId Subdivider::add(Weighted point) {
 
 VertexId Subdivider::edge_node(CellKind kind, std::uint8_t a, std::uint8_t b) const {
     const auto edges = second_order_edges(kind);
-    const auto edge = std::find_if(edges.begin(), edges.end(), [&](const Edge& e) {
-        return (e[0] == a && e[1] == b) || (e[0] == b && e[1] == a);
-    });
+    const auto edge = std::find_if(edges.begin(), edges.end(),
+                                   [&](const Edge& e) { return (e[0] == a && e[1] == b) || (e[0] == b && e[1] == a); });
     assert(edge != edges.end());
     return nodes_[vertex_count(kind) + static_cast<std::size_t>(edge - edges.begin())];
 }
@@ -200,8 +199,9 @@ void Subdivider::split_tet(CellList& cells) const {
         const glm::dvec3 d = position(nodes_[o.diagonal[0]]) - position(nodes_[o.diagonal[1]]);
         return glm::dot(d, d);
     };
-    const auto* best = std::min_element(octahedron.begin(), octahedron.end(),
-                                        [&](const Octahedron& a, const Octahedron& b) { return length(a) < length(b); });
+    const auto* best =
+        std::min_element(octahedron.begin(), octahedron.end(),
+                         [&](const Octahedron& a, const Octahedron& b) { return length(a) < length(b); });
     std::array<Tet, 4> pieces{};
     for (std::size_t n = 0; n < 4; ++n)
         pieces[n] = {best->diagonal[0], best->diagonal[1], best->around[n], best->around[(n + 1) % 4]};

@@ -53,8 +53,8 @@ bool is_su2(std::string_view head) {
     return false;
 }
 
-// Fluent files are lists in brackets, each of which starts with the number of its kind: a comment (0), a header (1), the
-// dimension (2) or nodes (10).
+// Fluent files are lists in brackets, each of which starts with the number of its kind: a comment (0), a header (1),
+// the dimension (2) or nodes (10).
 bool is_fluent(std::string_view text) {
     if (!text.starts_with('(')) return false;
     text.remove_prefix(1);

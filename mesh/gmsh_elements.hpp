@@ -14,8 +14,8 @@
 namespace cellproj {
 
 struct GmshElementType {
-    int nodes = 0;                 // its corners first, in VTK's order
-    std::optional<CellKind> kind;  // empty for points, lines and surfaces
+    int nodes = 0;                             // its corners first, in VTK's order
+    std::optional<CellKind> kind;              // empty for points, lines and surfaces
     std::span<const std::int8_t> places = {};  // of second order: where the extra nodes stand (curved_cells.hpp)
 };
 

@@ -69,7 +69,9 @@ void leave_out_cells(Dataset& dataset, const std::vector<bool>& hidden) {
 std::vector<bool> cells_touching(const GridDimensions& grid, const std::vector<bool>& hidden) {
     assert(hidden.size() == grid.ni * grid.nj * grid.nk);
     std::vector<bool> touching(grid.cells(), false);
-    const auto at = [&](std::size_t i, std::size_t j, std::size_t k) { return hidden[i + grid.ni * (j + grid.nj * k)]; };
+    const auto at = [&](std::size_t i, std::size_t j, std::size_t k) {
+        return hidden[i + grid.ni * (j + grid.nj * k)];
+    };
     std::size_t cell = 0;
     for (std::size_t k = 0; k + 1 < grid.nk; ++k) {
         for (std::size_t j = 0; j + 1 < grid.nj; ++j) {

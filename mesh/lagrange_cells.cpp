@@ -94,15 +94,14 @@ private:
                    {i, j + 1, k + 1}}});
     }
 
-    // The tetrahedron from (i, j, k) on; the octahedron beside it, cut along one diagonal into four; and the tetrahedron
-    // that is left of the lattice's box, which points the other way.
+    // The tetrahedron from (i, j, k) on; the octahedron beside it, cut along one diagonal into four; and the
+    // tetrahedron that is left of the lattice's box, which points the other way.
     void append_tets(int i, int j, int k) {
         piece<4>({{{i, j, k}, {i + 1, j, k}, {i, j + 1, k}, {i, j, k + 1}}});
         const int room = order_ - i - j - k;
         if (room >= 2) {
             const Lattice low{i + 1, j, k}, high{i, j + 1, k + 1};
-            const std::array<Lattice, 4> around{
-                {{i, j + 1, k}, {i, j, k + 1}, {i + 1, j, k + 1}, {i + 1, j + 1, k}}};
+            const std::array<Lattice, 4> around{{{i, j + 1, k}, {i, j, k + 1}, {i + 1, j, k + 1}, {i + 1, j + 1, k}}};
             for (std::size_t n = 0; n < 4; ++n)
                 piece<4>({{low, high, around[n], around[(n + 1) % 4]}});
         }

@@ -33,7 +33,8 @@ bool looks_like_text(std::string_view head) {
 
 std::optional<double> parse_number(std::string_view word) {
     std::string digits(word.substr(word.starts_with('+') ? 1 : 0));
-    std::replace_if(digits.begin(), digits.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
+    std::replace_if(
+        digits.begin(), digits.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
     double value = 0.0;
     const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     // Out of range: too small for float64 as often as too large; neither is worth losing the file.
@@ -93,12 +94,13 @@ void NumberFile::parse(const std::filesystem::path& file) {
         good = good && value && count <= most - numbers_.size();
         if (!good) {
             const auto line = std::count(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(begin), '\n') + 1;
-            throw Error({.kind = ErrorKind::format,
-                         .place = file.string() + ", line " + std::to_string(line),
-                         .expected = "nothing but numbers",
-                         .found = "\"" + printable(std::string(text.substr(begin, std::min<std::size_t>(end - begin, 40)))) +
-                                  "\"",
-                         .advice = "the file may be damaged or of another format: write it again"});
+            throw Error(
+                {.kind = ErrorKind::format,
+                 .place = file.string() + ", line " + std::to_string(line),
+                 .expected = "nothing but numbers",
+                 .found =
+                     "\"" + printable(std::string(text.substr(begin, std::min<std::size_t>(end - begin, 40)))) + "\"",
+                 .advice = "the file may be damaged or of another format: write it again"});
         }
         numbers_.insert(numbers_.end(), count, *value);
         begin = end;

@@ -17,8 +17,8 @@ struct RawVolume {
     GridDimensions dimensions;
     NumberType type = NumberType::uint8;
     bool big_endian = false;
-    glm::dvec3 spacing{1.0};  // finite, not 0
-    glm::dvec3 origin{0.0};   // finite
+    glm::dvec3 spacing{1.0};         // finite, not 0
+    glm::dvec3 origin{0.0};          // finite
     std::uint64_t header_bytes = 0;  // in front of the numbers
 };
 

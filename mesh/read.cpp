@@ -19,7 +19,8 @@ std::string advice_for(const fs::path& file) {
     if (suffix == ".raw" || suffix == ".dat") {
         return "bare voxels need their layout: --dims NX NY NZ --type uint8 (or int16, float32, ...)";
     }
-    if (suffix == ".frd" || suffix == ".inp") return "CalculiX results: convert them to .vtu, as with ccx2paraview FILE vtu";
+    if (suffix == ".frd" || suffix == ".inp")
+        return "CalculiX results: convert them to .vtu, as with ccx2paraview FILE vtu";
     if (suffix == ".face" || suffix == ".poly" || suffix == ".smesh") {
         return "these are faces; give the tetrahedra, the .ele file, or fill the surface: cellproj tetrahedralize";
     }

@@ -234,8 +234,8 @@ void require_matching_solution(const Grid& grid, const NumberFile& numbers, cons
     }
     if (*blocks != grid.blocks) {
         const std::size_t known = std::min(blocks->size(), grid.blocks.size());
-        const auto [own, other] = std::mismatch(blocks->begin(), blocks->begin() + static_cast<std::ptrdiff_t>(known),
-                                                grid.blocks.begin());
+        const auto [own, other] =
+            std::mismatch(blocks->begin(), blocks->begin() + static_cast<std::ptrdiff_t>(known), grid.blocks.begin());
         const auto block = static_cast<std::size_t>(own - blocks->begin());
         fail(ErrorKind::data, file,
              block < known ? "a solution for the grid's " + to_words(*other) + " points" +

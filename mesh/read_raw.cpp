@@ -67,8 +67,9 @@ void require_sound(const RawVolume& raw, const fs::path& file) {
     const std::string fits = size > raw.header_bytes ? volumes_that_fit(raw, size - raw.header_bytes) : "";
     const std::string header =
         raw.header_bytes > 0 ? " behind a header of " + std::to_string(raw.header_bytes) : std::string();
-    fail(ErrorKind::format, file, std::to_string(needed) + " bytes" + header + ", " + to_words(n) + " times " +
-                                      std::to_string(bytes_of(raw.type)),
+    fail(ErrorKind::format, file,
+         std::to_string(needed) + " bytes" + header + ", " + to_words(n) + " times " +
+             std::to_string(bytes_of(raw.type)),
          "a file of " + std::to_string(size) + " bytes" + (fits.empty() ? "" : ", which fits " + fits),
          size > needed && size - needed != raw.header_bytes
              ? "check dimensions, type and header; a header would take " + std::to_string(size - needed) + " bytes"

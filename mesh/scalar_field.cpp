@@ -190,7 +190,8 @@ ScalarField averaged_to_points(const TetMesh& mesh, const ScalarField& field) {
 
 ScalarField with_finite_values(ScalarField field, double value) {
     assert(std::isfinite(value));
-    std::replace_if(field.values.begin(), field.values.end(), [](double v) { return !std::isfinite(v); }, value);
+    std::replace_if(
+        field.values.begin(), field.values.end(), [](double v) { return !std::isfinite(v); }, value);
     return field;
 }
 

@@ -28,8 +28,8 @@ public:
     explicit TextCells(std::int64_t first_id) : first_id_(first_id) {}
 
     void reserve(CellKind kind, std::size_t count) { reserve_cells(cells_, kind, count); }
-    // The next `nodes` ids are a cell, its corners first. Its extra nodes stand at `places` (curved_cells.hpp); none: only
-    // the corners count. Throws Error (data) for an id below the first one.
+    // The next `nodes` ids are a cell, its corners first. Its extra nodes stand at `places` (curved_cells.hpp); none:
+    // only the corners count. Throws Error (data) for an id below the first one.
     void read(TextScanner& scanner, CellKind kind, std::size_t nodes, std::span<const std::int8_t> places = {});
     // Throws Error (data) where the largest id was read when there is no such point.
     CellList take(const TextScanner& scanner, std::size_t points);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files to datasets without VTK: the formats of TetGen, Gmsh, Medit and SU2, PLOT3D and bare voxels, by small readers of
-// our own.
+// Files to datasets without VTK: the formats of TetGen, Gmsh, Medit and SU2, PLOT3D and bare voxels, by small readers
+// of our own.
 //
 // All of them: points float64, as many and in the order as in the file; volume cells by kind, those of higher order by
-// their corners, but Gmsh's and TetGen's of second order cut at their nodes, if `subdivide` is 1 (of Medit's, no document
-// fixes the order of the nodes); points, lines and surfaces among the elements are skipped and counted. Ids become 0-based. A count
-// announced in the file is compared with the size of the file before memory is taken for it. Sizes: #P points, #C
-// volume cells. Throw Error, naming file and line (or byte):
+// their corners, but Gmsh's and TetGen's of second order cut at their nodes, if `subdivide` is 1 (of Medit's, no
+// document fixes the order of the nodes); points, lines and surfaces among the elements are skipped and counted. Ids
+// become 0-based. A count announced in the file is compared with the size of the file before memory is taken for it.
+// Sizes: #P points, #C volume cells. Throw Error, naming file and line (or byte):
 // - file: missing, a folder, unreadable;
 // - format: truncated, malformed, an unknown version, element type or keyword where one is needed;
 // - data: no points, no volume cells, a two-dimensional mesh, points that are not finite, ids out of range or missing.

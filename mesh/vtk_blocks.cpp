@@ -104,7 +104,8 @@ void add_name(std::vector<std::string>& names, const std::string& name) {
 Dataset blocks_to_dataset(vtkDataObject& data, const fs::path& file, const std::string& format,
                           const ReadOptions& options) {
     const std::vector<std::string>& wanted = options.blocks;
-    if (auto* single = vtkDataSet::SafeDownCast(&data)) return leaf_to_dataset(*single, file, format, options.subdivide);
+    if (auto* single = vtkDataSet::SafeDownCast(&data))
+        return leaf_to_dataset(*single, file, format, options.subdivide);
     if (!vtkDataObjectTree::SafeDownCast(&data)) {
         throw Error({.kind = ErrorKind::data,
                      .place = file.string(),
@@ -136,8 +137,8 @@ Dataset blocks_to_dataset(vtkDataObject& data, const fs::path& file, const std::
     std::vector<Dataset> blocks;
     for (const Leaf& leaf : leaves) {
         if (!is_volume(*leaf.data) || !is_chosen(leaf.name, wanted)) continue;
-        blocks.push_back(leaf_to_dataset(*leaf.data, file.string() + ", block " + leaf.name, format,
-                                         options.subdivide));
+        blocks.push_back(
+            leaf_to_dataset(*leaf.data, file.string() + ", block " + leaf.name, format, options.subdivide));
         blocks.back().source = file.string();
     }
     Dataset dataset = merge_blocks(std::move(blocks), file);

@@ -37,8 +37,8 @@ Field to_field(vtkDataArray& array, const std::string& name, std::span<const std
 // All of them.
 Field to_field(vtkDataArray& array, const std::string& name);
 
-// The arrays of numbers of `attributes`, each of `rows` rows, converted by `convert(array, name)`; texts and ghost marks are
-// left out. Throws Error (format) when an array has another number of rows.
+// The arrays of numbers of `attributes`, each of `rows` rows, converted by `convert(array, name)`; texts and ghost
+// marks are left out. Throws Error (format) when an array has another number of rows.
 std::vector<Field> to_fields(vtkDataSetAttributes& attributes, std::size_t rows, const std::filesystem::path& place,
                              const std::function<Field(vtkDataArray&, const std::string&)>& convert);
 // The check behind it.
@@ -47,8 +47,9 @@ void require_rows(vtkDataArray& array, const std::string& name, std::size_t rows
 // vtk_grid.cpp: the volume cells and the fields of a grid; `place` names it in messages, `format` is told in words. All
 // linear kinds are taken; those of higher order are cut at their nodes if `subdivide` is 1, or count by their corners
 // if it is 0 (ReadOptions::subdivide).
-// Cells marked as duplicate or hidden in vtkGhostType, or with a point marked as hidden, are left out and counted. Throws
-// Error (format) for cells that do not fit their lists, Error (data) for other kinds and for point ids out of range.
+// Cells marked as duplicate or hidden in vtkGhostType, or with a point marked as hidden, are left out and counted.
+// Throws Error (format) for cells that do not fit their lists, Error (data) for other kinds and for point ids out of
+// range.
 Dataset to_dataset(vtkUnstructuredGrid& grid, const std::filesystem::path& place, const std::string& format,
                    int subdivide = 1);
 

@@ -52,8 +52,8 @@ constexpr std::array<std::int8_t, 9> pyramid_19_places{5, 6, 7, 8, 9, 10, 11, 12
 // How a VTK type becomes one of ours. Cells of higher order list their corners first, in the order of the linear kind.
 struct KindRule {
     CellKind kind;
-    std::size_t nodes = 0;      // in VTK's list; 0: as many as it likes, the corners first
-    Places places = {};         // of second order
+    std::size_t nodes = 0;  // in VTK's list; 0: as many as it likes, the corners first
+    Places places = {};     // of second order
     bool is_lagrange = false;
 };
 
@@ -196,7 +196,8 @@ public:
     // Throws Error (format) when there are marks, but not one for each of `rows` rows.
     GhostMarks(vtkDataSetAttributes& attributes, vtkIdType rows, const fs::path& place)
         : marks_(attributes.GetArray(vtkDataSetAttributes::GhostArrayName())) {
-        if (marks_) require_rows(*marks_, vtkDataSetAttributes::GhostArrayName(), static_cast<std::size_t>(rows), place);
+        if (marks_)
+            require_rows(*marks_, vtkDataSetAttributes::GhostArrayName(), static_cast<std::size_t>(rows), place);
     }
 
     bool has(vtkIdType row, int bits) const {
@@ -383,8 +384,9 @@ Dataset to_dataset(vtkUnstructuredGrid& grid, const fs::path& place, const std::
     dataset.cells = std::move(volume.cells);
     dataset.ghost_cells = volume.ghosts;
     dataset.skipped_cells = static_cast<std::size_t>(grid.GetNumberOfCells()) - volume.in_file;
-    dataset.point_fields = to_fields(*grid.GetPointData(), dataset.points.size(), place,
-                                     [](vtkDataArray& array, const std::string& name) { return to_field(array, name); });
+    dataset.point_fields =
+        to_fields(*grid.GetPointData(), dataset.points.size(), place,
+                  [](vtkDataArray& array, const std::string& name) { return to_field(array, name); });
     dataset.cell_fields =
         to_fields(*grid.GetCellData(), static_cast<std::size_t>(grid.GetNumberOfCells()), place,
                   [&](vtkDataArray& array, const std::string& name) { return to_field(array, name, volume.rows); });

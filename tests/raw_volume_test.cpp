@@ -31,7 +31,8 @@ std::string bytes_of_values(const std::vector<T>& values, bool big_endian) {
 template <class T>
 void expect_type(NumberType type) {
     using Limits = std::numeric_limits<T>;
-    std::vector<T> values{Limits::lowest(), Limits::max(), T{0}, T{1}, T{2}, T{3}, T{4}, T{5}, T{6}, T{7}, T{8}, T{100}};
+    std::vector<T> values{
+        Limits::lowest(), Limits::max(), T{0}, T{1}, T{2}, T{3}, T{4}, T{5}, T{6}, T{7}, T{8}, T{100}};
     for (const bool big_endian : {false, true}) {
         RawVolume raw{.dimensions = {2, 2, 3}, .type = type, .big_endian = big_endian, .header_bytes = 5};
         const Dataset dataset = read(write("v.raw", "12345" + bytes_of_values(values, big_endian)), {.raw = raw});
@@ -70,18 +71,21 @@ TEST(RawVolume, ASizeThatDoesNotFitTellsWhatWould) {
     const auto expect = [&](const RawVolume& raw, const std::string& words) {
         expect_error(file, ErrorKind::format, words, {.raw = raw});
     };
-    expect({.dimensions = {4, 4, 5}}, "expected 80 bytes, 4 x 4 x 5 times 1, found a file of 64 bytes, which fits 4 x 4 x 4 of this type");
+    expect({.dimensions = {4, 4, 5}},
+           "expected 80 bytes, 4 x 4 x 5 times 1, found a file of 64 bytes, which fits 4 x 4 x 4 of this type");
     expect({.dimensions = {4, 4, 2}}, "4 x 4 x 2 of a type of 2 bytes");
     expect({.dimensions = {4, 4, 2}}, "a header would take 32 bytes");
     expect({.dimensions = {3, 5, 2}, .type = NumberType::float64}, "2 x 2 x 2 of a type of 8 bytes");
     expect({.dimensions = {4, 4, 4}, .header_bytes = 1}, "behind a header of 1");
     expect({.dimensions = {4, 4, 4}, .header_bytes = std::numeric_limits<std::uint64_t>::max()}, "64 bytes");
     expect_error(file, ErrorKind::option, "at least 2 points", {.raw = RawVolume{.dimensions = {64, 1, 1}}});
-    expect_error(file, ErrorKind::option, "at most", {.raw = RawVolume{.dimensions = {1U << 31U, 1U << 31U, 1U << 31U}}});
+    expect_error(file, ErrorKind::option, "at most",
+                 {.raw = RawVolume{.dimensions = {1U << 31U, 1U << 31U, 1U << 31U}}});
     expect_error(file, ErrorKind::option, "spacing", {.raw = RawVolume{.dimensions = {4, 4, 4}, .spacing = {1, 0, 1}}});
     expect_error(file, ErrorKind::option, "origin",
                  {.raw = RawVolume{.dimensions = {4, 4, 4}, .origin = {0, 0, std::nan("")}}});
-    expect_error(file, ErrorKind::option, "without block names", {.blocks = {"a"}, .raw = RawVolume{.dimensions = {4, 4, 4}}});
+    expect_error(file, ErrorKind::option, "without block names",
+                 {.blocks = {"a"}, .raw = RawVolume{.dimensions = {4, 4, 4}}});
     expect_error(file, ErrorKind::format, "--dims NX NY NZ --type");
 }
 

@@ -359,8 +359,8 @@ TEST(ReadBlocks, PartitionedGrids) {
 
 // ---- Fluent ----
 
-// A case of a cube and a pyramid on top, as Fluent writes it: nodes, cells by type and faces between two cells, ids from 1,
-// in hexadecimal.
+// A case of a cube and a pyramid on top, as Fluent writes it: nodes, cells by type and faces between two cells, ids
+// from 1, in hexadecimal.
 std::string fluent_case() {
     return "(0 \"cube and pyramid\")\n(2 3)\n(10 (0 1 9 0 3))\n(10 (1 1 9 1 3)(\n"
            "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n0.5 0.5 2\n))\n"
