@@ -17,8 +17,8 @@
 namespace cellproj {
 
 // Volume cells, vertices in VTK's order (a wedge or prism: one end, then the other in the same order; which way round is
-// never trusted). Voxels are stored as hexahedra; quadratic, Lagrange and Bézier cells by their corners, so curved edges
-// become straight. A polyhedron stores a face stream instead of vertices: the number of faces, then for each face the
+// never trusted). Voxels are stored as hexahedra; cells of higher order are cut at their nodes or stored by their corners
+// (ReadOptions::subdivide). A polyhedron stores a face stream instead of vertices: the number of faces, then for each face the
 // number of its vertices and their ids in cyclic order.
 enum class CellKind : std::uint8_t {
     tetrahedron,

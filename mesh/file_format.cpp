@@ -53,6 +53,18 @@ bool is_su2(std::string_view head) {
     return false;
 }
 
+// Fluent files are lists in brackets, each of which starts with the number of its kind: a comment (0), a header (1),
+// the dimension (2) or nodes (10).
+bool is_fluent(std::string_view text) {
+    if (!text.starts_with('(')) return false;
+    text.remove_prefix(1);
+    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    const std::string_view number = text.substr(0, digits);
+    const bool ends = digits < text.size() && std::isspace(static_cast<unsigned char>(text[digits])) != 0;
+    return ends && (number == "0" || number == "1" || number == "2" || number == "10");
+}
+
 std::optional<FileFormat> format_by_content(const fs::path& file) {
     constexpr std::size_t head_size = 4096;
     const std::string bytes = read_bytes(file, 0, head_size);
@@ -64,6 +76,8 @@ std::optional<FileFormat> format_by_content(const fs::path& file) {
     if (head.starts_with("\x89HDF\r\n")) return format_in_hdf5(file);
     if (contains(head.substr(0, 64), "ADF Database Version")) return FileFormat::cgns;
     if (head.starts_with("NRRD000")) return FileFormat::nrrd;
+    if (head.starts_with("11111\n") || head.starts_with("11111 ")) return FileFormat::slc;  // its magic number
+    if (is_fluent(text)) return FileFormat::fluent;
     if (head.starts_with("$MeshFormat")) return FileFormat::gmsh;
     if (text.starts_with("MeshVersionFormatted")) return FileFormat::medit;
     if (text.starts_with("FORMAT") && contains(lower_case(std::string(text.substr(0, 256))), "ensight")) {
@@ -126,6 +140,10 @@ const char* name(FileFormat format) {
             return "MetaImage";
         case FileFormat::nrrd:
             return "NRRD";
+        case FileFormat::slc:
+            return "SLC";
+        case FileFormat::fluent:
+            return "Fluent";
         case FileFormat::gmsh:
             return "Gmsh";
         case FileFormat::medit:

@@ -18,6 +18,8 @@ enum class FileFormat {
     cgns,        // .cgns (ADF or HDF5)
     meta_image,  // .mhd .mha
     nrrd,        // .nrrd .nhdr
+    slc,         // VolVis .slc
+    fluent,      // .msh .cas
     gmsh,        // .msh
     medit,       // .mesh
     su2,         // .su2

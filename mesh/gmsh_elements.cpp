@@ -2,6 +2,7 @@
 #include "mesh/gmsh_elements.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace cellproj {
 
@@ -9,12 +10,26 @@ namespace {
 
 constexpr std::uint32_t nowhere = 0xffffffffU;
 
+// Gmsh reference manual, "Node ordering": edges by their lower, then their higher corner, but for the last two of the
+// tetrahedron; faces likewise.
+constexpr std::array<std::int8_t, 6> tet_places{4, 5, 6, 7, 9, 8};
+constexpr std::array<std::int8_t, 19> hex_20_places{8,  11, 13, 9,  16, 18, 19, 17, 10, 12,
+                                                    14, 15, -1, -1, -1, -1, -1, -1, -1};
+constexpr std::array<std::int8_t, 19> hex_27_places{8,  11, 13, 9,  16, 18, 19, 17, 10, 12,
+                                                    14, 15, 20, 25, 21, 23, 24, 22, 26};
+constexpr std::array<std::int8_t, 12> wedge_15_places{6, 9, 7, 12, 14, 13, 8, 10, 11, -1, -1, -1};
+constexpr std::array<std::int8_t, 12> wedge_18_places{6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16};
+constexpr std::array<std::int8_t, 9> pyramid_13_places{5, 8, 10, 6, 7, 9, 11, 12, -1};
+constexpr std::array<std::int8_t, 9> pyramid_14_places{5, 8, 10, 6, 7, 9, 11, 12, 13};
+
 }  // namespace
 
 // Gmsh reference manual, "MSH file format"; the third- and fourth-order quadrilaterals and prisms: its GmshDefines.h.
 std::optional<GmshElementType> gmsh_element_type(std::int64_t type) {
-    const auto flat = [](int nodes) { return GmshElementType{nodes, std::nullopt}; };
-    const auto volume = [](int nodes, CellKind kind) { return GmshElementType{nodes, kind}; };
+    const auto flat = [](int nodes) { return GmshElementType{nodes, std::nullopt, {}}; };
+    const auto volume = [](int nodes, CellKind kind, std::span<const std::int8_t> places = {}) {
+        return GmshElementType{nodes, kind, places};
+    };
     switch (type) {
         case 1:
             return flat(2);
@@ -37,23 +52,23 @@ std::optional<GmshElementType> gmsh_element_type(std::int64_t type) {
         case 10:
             return flat(9);
         case 11:
-            return volume(10, CellKind::tetrahedron);
+            return volume(10, CellKind::tetrahedron, tet_places);
         case 12:
-            return volume(27, CellKind::hexahedron);
+            return volume(27, CellKind::hexahedron, hex_27_places);
         case 13:
-            return volume(18, CellKind::wedge);
+            return volume(18, CellKind::wedge, wedge_18_places);
         case 14:
-            return volume(14, CellKind::pyramid);
+            return volume(14, CellKind::pyramid, pyramid_14_places);
         case 15:
             return flat(1);
         case 16:
             return flat(8);
         case 17:
-            return volume(20, CellKind::hexahedron);
+            return volume(20, CellKind::hexahedron, hex_20_places);
         case 18:
-            return volume(15, CellKind::wedge);
+            return volume(15, CellKind::wedge, wedge_15_places);
         case 19:
-            return volume(13, CellKind::pyramid);
+            return volume(13, CellKind::pyramid, pyramid_13_places);
         case 20:
             return flat(9);
         case 21:

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,8 +14,9 @@
 namespace cellproj {
 
 struct GmshElementType {
-    int nodes = 0;                 // its corners first, in VTK's order
-    std::optional<CellKind> kind;  // empty for points, lines and surfaces
+    int nodes = 0;                             // its corners first, in VTK's order
+    std::optional<CellKind> kind;              // empty for points, lines and surfaces
+    std::span<const std::int8_t> places = {};  // of second order: where the extra nodes stand (curved_cells.hpp)
 };
 
 // Empty for an unknown type, for polygons and for polyhedra.

@@ -13,17 +13,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What to do with a file of a known suffix that cannot be read.
+std::string advice_for(const fs::path& file) {
+    const std::string suffix = file.extension().string();
+    if (suffix == ".raw" || suffix == ".dat") {
+        return "bare voxels need their layout: --dims NX NY NZ --type uint8 (or int16, float32, ...)";
+    }
+    if (suffix == ".frd" || suffix == ".inp")
+        return "CalculiX results: convert them to .vtu, as with ccx2paraview FILE vtu";
+    if (suffix == ".face" || suffix == ".poly" || suffix == ".smesh") {
+        return "these are faces; give the tetrahedra, the .ele file, or fill the surface: cellproj tetrahedralize";
+    }
+    return "convert it to .vtu; for a PLOT3D grid of another suffix, give its solution file, too";
+}
+
 [[noreturn]] void throw_not_recognised(const fs::path& file) {
     const std::string head = fs::is_directory(file) ? "" : read_bytes(file, 0, 24);
     throw Error({.kind = ErrorKind::format,
                  .place = file.string(),
                  .expected =
                      "VTK XML (<VTKFile ...>) or legacy VTK (# vtk DataFile ...), an OpenFOAM case (.foam or its "
-                     "folder), EnSight Gold (.case), Exodus II, CGNS, MetaImage, NRRD, Gmsh, Medit, SU2, TetGen "
-                     "(.node, .ele) or a PLOT3D grid (.xyz, .x, .p3d, .g, .bin)",
+                     "folder), EnSight Gold (.case), Exodus II, CGNS, Fluent (.cas, .msh), MetaImage, NRRD, SLC, Gmsh, "
+                     "Medit, SU2, TetGen (.node, .ele) or a PLOT3D grid (.xyz, .x, .p3d, .g, .bin)",
                  .found = head.empty() ? "a folder that is no OpenFOAM case"
                                        : "a file that starts with \"" + printable(head) + "\"",
-                 .advice = "convert it to .vtu; for a PLOT3D grid of another suffix, give its solution file, too"});
+                 .advice = advice_for(file)});
 }
 
 FileFormat require_format(const fs::path& file, const ReadOptions& options) {
@@ -47,14 +61,16 @@ void require_no_solution(const fs::path& file, FileFormat format, const ReadOpti
 
 Dataset read_format(FileFormat format, const fs::path& file, const ReadOptions& options) {
     switch (format) {
+        case FileFormat::plot3d:
+            return read_plot3d(file, options.solution, options.blocks);
         case FileFormat::gmsh:
-            return read_gmsh(file);
+            return read_gmsh(file, options.subdivide);
         case FileFormat::medit:
             return read_medit(file);
         case FileFormat::su2:
             return read_su2(file);
         case FileFormat::tetgen:
-            return read_tetgen(file);
+            return read_tetgen(file, options.subdivide);
         default:
             return read_with_vtk(format, file, options);
     }
@@ -80,6 +96,11 @@ void require_used(const Dataset& dataset, const fs::path& file, const ReadOption
 }  // namespace
 
 Dataset read(const fs::path& file, const ReadOptions& options) {
+    if (options.raw) {
+        Dataset dataset = read_raw(file, *options.raw);
+        require_used(dataset, file, options);
+        return dataset;
+    }
     const FileFormat format = require_format(file, options);
     require_no_solution(file, format, options);
     Dataset dataset = read_format(format, file, options);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files to datasets. TetGen, Gmsh, Medit and SU2 files are read by readers of our own, all others through VTK's
-// readers; built without VTK, `read` throws Error (environment) for these.
+// Files to datasets. TetGen, Gmsh, Medit, SU2, PLOT3D and raw files are read by readers of our own, all others through
+// VTK's readers; built without VTK, `read` throws Error (environment) for these.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mesh/dataset.hpp"
+#include "mesh/raw_volume.hpp"
 
 namespace cellproj {
 
@@ -22,20 +23,27 @@ struct ReadOptions {
     // Told how much VTK's reader has read, 0 to 1, while `read` is under way, on its thread; it may start again with each
     // part of a file. Not for the formats that need no VTK.
     std::function<void(double fraction)> progress = {};
+    // Cells of second order and Lagrange cells: 1 cuts them at their nodes, so that all values are used and curved
+    // edges bend there; 0 takes their corners only. Bézier cells, Lagrange pyramids, Medit's and Gmsh's orders 3 and 4
+    // always count by their corners. One level is what the nodes say: more would cost 8 times the cells for what lies
+    // between them.
+    int subdivide = 1;
+    std::optional<RawVolume> raw = {};  // the file is bare voxels of this layout, whatever its name
 };
 
 // Reads
 // - VTK XML: unstructured, structured, rectilinear and image grids (.vtu .vts .vtr .vti), partitioned (.pvtu .pvts
-// .pvtr
-//   .pvti), multi-block (.vtm) and collections, which are time series (.pvd); legacy VTK of the same four kinds (.vtk);
+//   .pvtr .pvti), multi-block (.vtm) and collections, which are time series (.pvd); legacy VTK of the same four kinds
+//   (.vtk);
 // - OpenFOAM cases, reconstructed or decomposed, given by their folder, system/controlDict or a file .foam: the
-// internal
-//   mesh of each region with its cell fields;
+//   internal mesh of each region with its cell fields;
 // - EnSight Gold (.case), Exodus II (.e .ex2 .exo; displacements are a field, not applied), CGNS (ADF and HDF5);
-// - MetaImage (.mhd .mha) and NRRD (.nrrd .nhdr) volumes, one point per voxel (NRRD: at least 10 voxels along the first
-//   axis; VTK takes a shorter one for components, which gives an Error);
-// - PLOT3D grids with, if `solution` is given, their fields (read_plot3d.cpp says which);
-// - TetGen, Gmsh, Medit and SU2 (text_formats.hpp).
+// - Fluent (.msh .cas, with the .dat beside it): linear cells; its polyhedra lose their faces in VTK's reader and give
+//   an Error;
+// - MetaImage (.mhd .mha), NRRD (.nrrd .nhdr) and SLC (.slc) volumes, one point per voxel (NRRD: at least 10 voxels
+//   along the first axis; VTK takes a shorter one for components, which gives an Error);
+// - PLOT3D grids with, if `solution` is given, their fields; raw volumes, if `raw` is given; TetGen, Gmsh, Medit and
+//   SU2 (text_formats.hpp).
 // The format is told by content first and by the file's suffix second. Structured, rectilinear and image grids become
 // curvilinear ones. All volume blocks of a file become one mesh, points unmerged and with NaN where a block lacks a
 // field; other blocks and other cells are skipped and counted. VTK's readers run in a child process each (a fork of
@@ -47,11 +55,9 @@ struct ReadOptions {
 // - format: not recognised, truncated, malformed, beyond the child's limits, a part of it (a piece, a file of the case)
 //   missing;
 // - data: no volume cells, cells of an unsupported kind, grids with one point in a direction, points that are not
-// finite,
-//   vertex ids out of range, a solution of another size;
-// - option: a solution given for a file that is no PLOT3D grid, a block that does not exist (the message lists those
-// that
-//   do), a time or blocks chosen in a file that has none.
+//   finite, vertex ids out of range, a solution of another size;
+// - option: a solution given for a file that is no PLOT3D grid, impossible dimensions of a raw volume, a block that
+//   does not exist (the message lists those that do), a time or blocks chosen in a file that has none.
 Dataset read(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace cellproj

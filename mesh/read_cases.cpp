@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Results of solvers in several files or blocks: OpenFOAM, EnSight Gold, Exodus II and CGNS.
+// Results of solvers in several files or blocks: OpenFOAM, EnSight Gold, Exodus II, CGNS and Fluent.
 #include <vtkCGNSReader.h>
+#include <vtkCallbackCommand.h>
 #include <vtkCellData.h>
+#include <vtkCommand.h>
 #include <vtkCompositeDataIterator.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataSet.h>
 #include <vtkDummyController.h>
 #include <vtkExodusIIReader.h>
+#include <vtkFLUENTReader.h>
 #include <vtkGenericEnSightReader.h>
 #include <vtkNew.h>
+#include <vtkOutputWindow.h>
 #include <vtkPOpenFOAMReader.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
@@ -17,6 +21,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "mesh/error.hpp"
 #include "mesh/vtk_conversion.hpp"
@@ -207,6 +212,33 @@ Dataset read_cgns(const fs::path& file, const ReadOptions& options) {
         reader->EnableAllCellArrays();
     });
     return read_blocks(*reader, file, "CGNS", options);
+}
+
+// ---- Fluent ----
+
+namespace {
+
+// A mesh without a solution is a good file, but an error to VTK's reader; its other errors go where they always do.
+void pass_on_error(vtkObject*, unsigned long, void*, void* text) {
+    const auto* message = static_cast<const char*>(text);
+    if (std::string_view(message).find("Could not open data file") != std::string_view::npos) return;
+    vtkOutputWindow::GetInstance()->DisplayErrorText(message);
+}
+
+}  // namespace
+
+Dataset read_fluent(const fs::path& file, const ReadOptions& options) {
+    vtkNew<vtkFLUENTReader> reader;
+    reader->SetFileName(file.c_str());
+    vtkNew<vtkCallbackCommand> errors;
+    errors->SetCallback(pass_on_error);
+    if (!fs::exists(fs::path(file).replace_extension(".dat"))) reader->AddObserver(vtkCommand::ErrorEvent, errors);
+    capture_errors(file, [&] {
+        reader->UpdateInformation();
+        for (int a = 0; a < reader->GetNumberOfCellArrays(); ++a)
+            reader->SetCellArrayStatus(reader->GetCellArrayName(a), 1);
+    });
+    return read_blocks(*reader, file, "Fluent", options);
 }
 
 }  // namespace cellproj

@@ -12,7 +12,9 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "mesh/curved_cells.hpp"
 #include "mesh/gmsh_elements.hpp"
 #include "mesh/text_cells.hpp"
 #include "mesh/text_formats.hpp"
@@ -23,7 +25,9 @@ namespace {
 
 class GmshReader {
 public:
-    explicit GmshReader(const std::filesystem::path& file) : scanner_(file) { dataset_.source = file.string(); }
+    GmshReader(const std::filesystem::path& file, int subdivide) : scanner_(file), subdivide_(subdivide) {
+        dataset_.source = file.string();
+    }
 
     Dataset read();
 
@@ -65,6 +69,9 @@ private:
     Field physical_{"physical", 1, {}};
     Field entity_{"entity", 1, {}};
     bool has_elements_ = false;
+    int subdivide_;
+    CurvedCells curved_;
+    std::vector<VertexId> element_nodes_;  // of the one at hand
 };
 
 // ---- Numbers ----
@@ -235,20 +242,23 @@ GmshElementType GmshReader::element_type() {
 }
 
 void GmshReader::read_element(const GmshElementType& type) {
-    std::array<VertexId, 8> corners{};
-    const std::size_t corner_total = type.kind ? vertex_count(*type.kind) : 0;
+    const std::size_t corners = type.kind ? vertex_count(*type.kind) : 0;
+    const bool is_curved = subdivide_ > 0 && !type.places.empty();
+    const std::size_t needed = is_curved ? static_cast<std::size_t>(type.nodes) : corners;
+    element_nodes_.clear();
     for (std::size_t i = 0; i < static_cast<std::size_t>(type.nodes); ++i) {
         const std::uint64_t tag = version_2_ ? static_cast<std::uint64_t>(integer("a node tag")) : size("a node tag");
-        if (i >= corner_total) continue;
+        if (i >= needed) continue;
         const std::optional<VertexId> node = nodes_.find(tag);
         if (!node) {
             scanner_.fail("the tag of one of the " + std::to_string(dataset_.points.size()) + " nodes",
                           std::to_string(tag), "nodes are missing or the tag is wrong: write it again",
                           ErrorKind::data);
         }
-        corners[i] = *node;
+        element_nodes_.push_back(*node);
     }
-    if (type.kind) append_cell(dataset_.cells, *type.kind, std::span(corners).first(corner_total));
+    if (is_curved) curved_.add(dataset_.cells.size(), element_nodes_, type.places);
+    if (type.kind) append_cell(dataset_.cells, *type.kind, std::span(element_nodes_).first(corners));
 }
 
 void GmshReader::add_labels(std::uint64_t tag, double physical, double entity) {
@@ -370,6 +380,7 @@ void GmshReader::finish() {
     }
     dataset_.cell_fields.push_back(std::move(entity_));
     require_volume_mesh(dataset_);
+    subdivide_at_nodes(dataset_, curved_);
 }
 
 Dataset GmshReader::read() {
@@ -387,8 +398,8 @@ Dataset GmshReader::read() {
 
 }  // namespace
 
-Dataset read_gmsh(const std::filesystem::path& file) {
-    return GmshReader(file).read();
+Dataset read_gmsh(const std::filesystem::path& file, int subdivide) {
+    return GmshReader(file, subdivide).read();
 }
 
 }  // namespace cellproj

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Volumes of voxels: MetaImage and NRRD. Each voxel becomes a point at its centre.
+// Volumes of voxels: MetaImage, NRRD and SLC. Each voxel becomes a point at its centre.
 #include <vtkImageData.h>
 #include <vtkMetaImageReader.h>
 #include <vtkNew.h>
 #include <vtkNrrdReader.h>
+#include <vtkSLCReader.h>
 
 #include "mesh/error.hpp"
 #include "mesh/vtk_conversion.hpp"
@@ -24,6 +25,13 @@ Dataset read_nrrd(const std::filesystem::path& file) {
     reader->SetFileName(file.c_str());
     update(*reader, file);
     return structured_to_dataset(*reader->GetOutput(), file, "NRRD");
+}
+
+Dataset read_slc(const std::filesystem::path& file) {
+    vtkNew<vtkSLCReader> reader;
+    reader->SetFileName(file.c_str());
+    update(*reader, file);
+    return structured_to_dataset(*reader->GetOutput(), file, "SLC");
 }
 
 }  // namespace cellproj

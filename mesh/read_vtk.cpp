@@ -15,9 +15,7 @@ Dataset read_family(FileFormat format, const std::filesystem::path& file, const 
         case FileFormat::vtk_xml:
             return read_vtk_xml(file, options);
         case FileFormat::vtk_legacy:
-            return read_vtk_legacy(file);
-        case FileFormat::plot3d:
-            return read_plot3d(file, options.solution);
+            return read_vtk_legacy(file, options);
         case FileFormat::openfoam:
             return read_openfoam(file, options);
         case FileFormat::ensight:
@@ -30,6 +28,11 @@ Dataset read_family(FileFormat format, const std::filesystem::path& file, const 
             return read_meta_image(file);
         case FileFormat::nrrd:
             return read_nrrd(file);
+        case FileFormat::slc:
+            return read_slc(file);
+        case FileFormat::fluent:
+            return read_fluent(file, options);
+        case FileFormat::plot3d:
         case FileFormat::gmsh:
         case FileFormat::medit:
         case FileFormat::su2:
@@ -48,10 +51,10 @@ bool names_other_files(FileFormat format, const std::filesystem::path& file) {
     switch (format) {
         case FileFormat::vtk_xml:
             return is_vtk_xml_index(file);
-        case FileFormat::plot3d:
         case FileFormat::openfoam:
         case FileFormat::ensight:
         case FileFormat::cgns:
+        case FileFormat::fluent:
         case FileFormat::meta_image:
         case FileFormat::nrrd:
             return true;

@@ -55,7 +55,7 @@ std::string require_supported(const std::string& found, const fs::path& file) {
 
 }  // namespace
 
-Dataset read_vtk_legacy(const fs::path& file) {
+Dataset read_vtk_legacy(const fs::path& file, const ReadOptions& options) {
     const std::string type = legacy_dataset_type(file);
     const std::string format = require_supported(type, file);
     if (type == "UNSTRUCTURED_GRID") require_sound_legacy_cells(file);
@@ -70,7 +70,7 @@ Dataset read_vtk_legacy(const fs::path& file) {
     reader->ReadAllTCoordsOn();
     reader->ReadAllFieldsOn();
     update(*reader, file);
-    if (vtkDataObject* data = reader->GetOutputDataObject(0)) return blocks_to_dataset(*data, file, format, {});
+    if (vtkDataObject* data = reader->GetOutputDataObject(0)) return blocks_to_dataset(*data, file, format, options);
     throw Error({.kind = ErrorKind::format,
                  .place = file.string(),
                  .expected = "the dataset that the file names",

@@ -176,7 +176,7 @@ Dataset read_collection(const fs::path& file, const ReadOptions& options) {
     const std::vector<double> times = times_of(entries);
     const double time = times[nearest_time(times, options.time)];
     const vtkSmartPointer<vtkDataObject> data = load_parts(file, entries, time);
-    Dataset dataset = blocks_to_dataset(*data, file, "VTK XML collection", options.blocks);
+    Dataset dataset = blocks_to_dataset(*data, file, "VTK XML collection", options);
     dataset.times = times;
     dataset.time = time;
     return dataset;
@@ -196,7 +196,7 @@ Dataset read_vtk_xml(const fs::path& file, const ReadOptions& options) {
         return read_collection(file, options);
     }
     const std::string format = require_supported(type, file);
-    return blocks_to_dataset(*load(file), file, format, options.blocks);
+    return blocks_to_dataset(*load(file), file, format, options);
 }
 
 }  // namespace cellproj

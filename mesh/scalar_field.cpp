@@ -188,6 +188,13 @@ ScalarField averaged_to_points(const TetMesh& mesh, const ScalarField& field) {
     return result;
 }
 
+ScalarField with_finite_values(ScalarField field, double value) {
+    assert(std::isfinite(value));
+    std::replace_if(
+        field.values.begin(), field.values.end(), [](double v) { return !std::isfinite(v); }, value);
+    return field;
+}
+
 ScalarRange range(const std::vector<double>& values) {
     ScalarRange result;
     bool first = true;

@@ -46,6 +46,10 @@ ScalarField as_scalar(const Field& field, FieldLocation location, int component)
 // Where not asked for, nothing is averaged: cell fields are drawn constant per cell, which is what the solver said.
 ScalarField averaged_to_points(const TetMesh& mesh, const ScalarField& field);
 
+// The field with `value`, which is finite, in place of NaN and infinities. Where not asked for, the cells that touch
+// such values are left out of the picture.
+ScalarField with_finite_values(ScalarField field, double value);
+
 struct ScalarRange {
     double low = 0.0;
     double high = 0.0;

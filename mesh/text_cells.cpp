@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh/text_cells.hpp"
 
-#include <array>
 #include <string>
 #include <utility>
 
@@ -20,22 +19,24 @@ void reserve_cells(CellList& cells, CellKind kind, std::size_t count) {
     cells.vertices.reserve(cells.vertices.size() + count * vertex_count(kind));
 }
 
-void TextCells::read(TextScanner& scanner, CellKind kind, std::size_t nodes) {
-    std::array<VertexId, 12> corners{};
-    const std::size_t corner_total = vertex_count(kind);
+void TextCells::read(TextScanner& scanner, CellKind kind, std::size_t nodes, std::span<const std::int8_t> places) {
+    const std::size_t corners = vertex_count(kind);
+    const std::size_t needed = places.empty() ? corners : nodes;
+    nodes_.clear();
     for (std::size_t i = 0; i < nodes; ++i) {
         const std::int64_t id = scanner.integer("a vertex id") - first_id_;
         if (id < 0 || id >= static_cast<std::int64_t>(max_elements)) {
             scanner.fail_word("a vertex id from " + std::to_string(first_id_) + " on", TextScanner::damaged,
                               ErrorKind::data);
         }
-        if (i >= corner_total) continue;
-        corners[i] = static_cast<VertexId>(id);
-        if (corners[i] < largest_) continue;
-        largest_ = corners[i];
+        if (i >= needed) continue;
+        nodes_.push_back(static_cast<VertexId>(id));
+        if (nodes_.back() < largest_) continue;
+        largest_ = nodes_.back();
         largest_position_ = scanner.position();
     }
-    append_cell(cells_, kind, std::span(corners).first(corner_total));
+    if (!places.empty()) curved_.add(cells_.size(), nodes_, places);
+    append_cell(cells_, kind, std::span(nodes_).first(corners));
 }
 
 CellList TextCells::take(const TextScanner& scanner, std::size_t points) {

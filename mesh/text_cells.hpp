@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "mesh/cell_faces.hpp"
+#include "mesh/curved_cells.hpp"
 #include "mesh/dataset.hpp"
 #include "mesh/text_scanner.hpp"
 
@@ -26,13 +28,17 @@ public:
     explicit TextCells(std::int64_t first_id) : first_id_(first_id) {}
 
     void reserve(CellKind kind, std::size_t count) { reserve_cells(cells_, kind, count); }
-    // The next `nodes` ids are a cell, its corners first. Throws Error (data) for an id below the first one.
-    void read(TextScanner& scanner, CellKind kind, std::size_t nodes);
+    // The next `nodes` ids are a cell, its corners first. Its extra nodes stand at `places` (curved_cells.hpp); none:
+    // only the corners count. Throws Error (data) for an id below the first one.
+    void read(TextScanner& scanner, CellKind kind, std::size_t nodes, std::span<const std::int8_t> places = {});
     // Throws Error (data) where the largest id was read when there is no such point.
     CellList take(const TextScanner& scanner, std::size_t points);
+    const CurvedCells& curved() const { return curved_; }
 
 private:
     CellList cells_;
+    CurvedCells curved_;
+    std::vector<VertexId> nodes_;  // of the cell at hand
     std::int64_t first_id_;
     VertexId largest_ = 0;
     std::size_t largest_position_ = 0;

@@ -83,9 +83,9 @@ void collect_leaves(vtkDataObject* data, const std::string& name, std::vector<Le
     }
 }
 
-Dataset leaf_to_dataset(vtkDataSet& data, const fs::path& place, const std::string& format) {
+Dataset leaf_to_dataset(vtkDataSet& data, const fs::path& place, const std::string& format, int subdivide) {
     if (is_structured(data)) return structured_to_dataset(data, place, format);
-    if (auto* grid = vtkUnstructuredGrid::SafeDownCast(&data)) return to_dataset(*grid, place, format);
+    if (auto* grid = vtkUnstructuredGrid::SafeDownCast(&data)) return to_dataset(*grid, place, format, subdivide);
     throw Error({.kind = ErrorKind::data,
                  .place = place.string(),
                  .expected = "volume cells",
@@ -103,8 +103,10 @@ void add_name(std::vector<std::string>& names, const std::string& name) {
 }  // namespace
 
 Dataset blocks_to_dataset(vtkDataObject& data, const fs::path& file, const std::string& format,
-                          const std::vector<std::string>& wanted) {
-    if (auto* single = vtkDataSet::SafeDownCast(&data)) return leaf_to_dataset(*single, file, format);
+                          const ReadOptions& options) {
+    const std::vector<std::string>& wanted = options.blocks;
+    if (auto* single = vtkDataSet::SafeDownCast(&data))
+        return leaf_to_dataset(*single, file, format, options.subdivide);
     if (!vtkDataObjectTree::SafeDownCast(&data)) {
         throw Error({.kind = ErrorKind::data,
                      .place = file.string(),
@@ -136,7 +138,8 @@ Dataset blocks_to_dataset(vtkDataObject& data, const fs::path& file, const std::
     std::vector<Dataset> blocks;
     for (const Leaf& leaf : leaves) {
         if (!leaf.volume || !is_chosen(leaf.name, wanted)) continue;
-        blocks.push_back(leaf_to_dataset(*leaf.data, file.string() + ", block " + leaf.name, format));
+        blocks.push_back(
+            leaf_to_dataset(*leaf.data, file.string() + ", block " + leaf.name, format, options.subdivide));
         blocks.back().source = file.string();
     }
     Dataset dataset = merge_blocks(std::move(blocks), file);

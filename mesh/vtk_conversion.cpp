@@ -5,6 +5,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
@@ -157,6 +158,30 @@ Field to_field(vtkDataArray& array, const std::string& name, std::span<const std
 Field to_field(vtkDataArray& array, const std::string& name) {
     const auto rows = static_cast<std::size_t>(array.GetNumberOfTuples());
     return gather_rows(array, name, rows, [](std::size_t i) { return static_cast<vtkIdType>(i); });
+}
+
+void require_rows(vtkDataArray& array, const std::string& name, std::size_t rows, const std::filesystem::path& place) {
+    if (array.GetNumberOfTuples() == static_cast<vtkIdType>(rows)) return;
+    throw Error({.kind = ErrorKind::format,
+                 .place = place.string() + ", array \"" + name + "\"",
+                 .expected = std::to_string(rows) + " rows",
+                 .found = std::to_string(array.GetNumberOfTuples()),
+                 .advice = "the file is damaged: write it again"});
+}
+
+std::vector<Field> to_fields(vtkDataSetAttributes& attributes, std::size_t rows, const std::filesystem::path& place,
+                             const std::function<Field(vtkDataArray&, const std::string&)>& convert) {
+    std::vector<Field> fields;
+    for (int i = 0, number = 0; i < attributes.GetNumberOfArrays(); ++i, ++number) {
+        vtkDataArray* array = attributes.GetArray(i);
+        if (!array || array->GetNumberOfComponents() < 1) continue;
+        const std::string name = array->GetName() ? array->GetName() : "unnamed " + std::to_string(number);
+        if (name == vtkDataSetAttributes::GhostArrayName()) continue;
+        require_rows(*array, name, rows, place);
+        fields.push_back(convert(*array, name));
+        attributes.RemoveArray(i--);
+    }
+    return fields;
 }
 
 }  // namespace cellproj

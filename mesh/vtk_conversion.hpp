@@ -15,6 +15,7 @@
 
 class vtkAlgorithm;
 class vtkDataArray;
+class vtkDataSetAttributes;
 class vtkPoints;
 class vtkUnstructuredGrid;
 
@@ -39,18 +40,23 @@ Field to_field(vtkDataArray& array, const std::string& name, std::span<const std
 // All of them.
 Field to_field(vtkDataArray& array, const std::string& name);
 
+// The arrays of numbers of `attributes`, each of `rows` rows, converted by `convert(array, name)` and removed one after
+// the other, so that few of them are held twice; texts and ghost marks are left out and stay where they are. Throws Error (format) when an array has another number of rows.
+std::vector<Field> to_fields(vtkDataSetAttributes& attributes, std::size_t rows, const std::filesystem::path& place,
+                             const std::function<Field(vtkDataArray&, const std::string&)>& convert);
+// The check behind it.
+void require_rows(vtkDataArray& array, const std::string& name, std::size_t rows, const std::filesystem::path& place);
+
 // vtk_grid.cpp: the volume cells and the fields of a grid; `place` names it in messages, `format` is told in words. All
-// linear kinds are taken; quadratic, Lagrange and Bézier cells by their corners only, so curved edges become straight.
-// Cells marked as duplicate or hidden in vtkGhostType, or with a point marked as hidden, are left out and counted. The grid
-// is emptied on the way, so that little is held twice. Throws Error (format) for cells that do not fit their lists, Error
-// (data) for other kinds and for point ids out of range.
-Dataset to_dataset(vtkUnstructuredGrid& grid, const std::filesystem::path& place, const std::string& format);
+// linear kinds are taken; those of higher order are cut at their nodes if `subdivide` is 1, or count by their corners
+// if it is 0 (ReadOptions::subdivide). Cells marked as duplicate or hidden in vtkGhostType, or with a point marked as
+// hidden, are left out and counted. The grid is emptied on the way, so that little is held twice. Throws Error (format)
+// for cells that do not fit their lists, Error (data) for other kinds and for point ids out of range.
+Dataset to_dataset(vtkUnstructuredGrid& grid, const std::filesystem::path& place, const std::string& format,
+                   int subdivide = 1);
 
 // legacy_cells.cpp: VTK's legacy reader follows the vertex counts of the cells without a look at how long the list is,
 // and crashes where they are wrong. Throws Error (format) for such a list.
 void require_sound_legacy_cells(const std::filesystem::path& file);
-
-// PLOT3D, read_plot3d.cpp: a single-block binary grid and, unless `solution` is empty, its fields.
-Dataset read_plot3d(const std::filesystem::path& file, const std::filesystem::path& solution);
 
 }  // namespace cellproj

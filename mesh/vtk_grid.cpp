@@ -13,15 +13,19 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <array>
 #include <cctype>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "mesh/cell_faces.hpp"
+#include "mesh/curved_cells.hpp"
 #include "mesh/error.hpp"
+#include "mesh/lagrange_cells.hpp"
 #include "mesh/vtk_conversion.hpp"
 
 namespace cellproj {
@@ -32,50 +36,84 @@ namespace fs = std::filesystem;
 
 // ---- Cells ----
 
+// Where the extra nodes of a curved cell stand in VTK's list (curved_cells.hpp has their order); -1 for none.
+using Places = std::span<const std::int8_t>;
+constexpr std::array<std::int8_t, 6> tet_places{4, 5, 6, 7, 8, 9};
+constexpr std::array<std::int8_t, 19> hex_20_places{8,  9,  10, 11, 12, 13, 14, 15, 16, 17,
+                                                    18, 19, -1, -1, -1, -1, -1, -1, -1};
+constexpr std::array<std::int8_t, 19> hex_24_places{8,  9,  10, 11, 12, 13, 14, 15, 16, 17,
+                                                    18, 19, -1, -1, 22, 21, 23, 20, -1};
+constexpr std::array<std::int8_t, 19> hex_27_places{8,  9,  10, 11, 12, 13, 14, 15, 16, 17,
+                                                    18, 19, 24, 25, 22, 21, 23, 20, 26};
+constexpr std::array<std::int8_t, 12> wedge_12_places{6, 7, 8, 9, 10, 11, -1, -1, -1, -1, -1, -1};
+constexpr std::array<std::int8_t, 12> wedge_15_places{6, 7, 8, 9, 10, 11, 12, 13, 14, -1, -1, -1};
+constexpr std::array<std::int8_t, 12> wedge_18_places{6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17};
+constexpr std::array<std::int8_t, 9> pyramid_13_places{5, 6, 7, 8, 9, 10, 11, 12, -1};
+constexpr std::array<std::int8_t, 9> pyramid_19_places{5, 6, 7, 8, 9, 10, 11, 12, 13};
+
 // How a VTK type becomes one of ours. Cells of higher order list their corners first, in the order of the linear kind.
 struct KindRule {
     CellKind kind;
-    bool corners_only = false;  // more vertices may follow; they are left out
+    std::size_t nodes = 0;  // in VTK's list; 0: as many as it likes, the corners first
+    Places places = {};     // of second order
+    bool is_lagrange = false;
 };
+
+KindRule linear(CellKind kind) {
+    return {kind, vertex_count(kind)};
+}
 
 std::optional<KindRule> rule_for(int vtk_type) {
     switch (vtk_type) {
         case VTK_TETRA:
-            return KindRule{CellKind::tetrahedron};
+            return linear(CellKind::tetrahedron);
         case VTK_VOXEL:
         case VTK_HEXAHEDRON:
-            return KindRule{CellKind::hexahedron};
+            return linear(CellKind::hexahedron);
         case VTK_WEDGE:
-            return KindRule{CellKind::wedge};
+            return linear(CellKind::wedge);
         case VTK_PYRAMID:
-            return KindRule{CellKind::pyramid};
+            return linear(CellKind::pyramid);
         case VTK_PENTAGONAL_PRISM:
-            return KindRule{CellKind::pentagonal_prism};
+            return linear(CellKind::pentagonal_prism);
         case VTK_HEXAGONAL_PRISM:
-            return KindRule{CellKind::hexagonal_prism};
+            return linear(CellKind::hexagonal_prism);
         case VTK_POLYHEDRON:
-            return KindRule{CellKind::polyhedron};
+            return linear(CellKind::polyhedron);
         case VTK_QUADRATIC_TETRA:
-        case VTK_LAGRANGE_TETRAHEDRON:
-        case VTK_BEZIER_TETRAHEDRON:
-            return KindRule{CellKind::tetrahedron, true};
+            return KindRule{CellKind::tetrahedron, 10, tet_places};
         case VTK_QUADRATIC_HEXAHEDRON:
+            return KindRule{CellKind::hexahedron, 20, hex_20_places};
         case VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON:
+            return KindRule{CellKind::hexahedron, 24, hex_24_places};
         case VTK_TRIQUADRATIC_HEXAHEDRON:
-        case VTK_LAGRANGE_HEXAHEDRON:
-        case VTK_BEZIER_HEXAHEDRON:
-            return KindRule{CellKind::hexahedron, true};
+            return KindRule{CellKind::hexahedron, 27, hex_27_places};
         case VTK_QUADRATIC_WEDGE:
+            return KindRule{CellKind::wedge, 15, wedge_15_places};
         case VTK_QUADRATIC_LINEAR_WEDGE:
+            return KindRule{CellKind::wedge, 12, wedge_12_places};
         case VTK_BIQUADRATIC_QUADRATIC_WEDGE:
-        case VTK_LAGRANGE_WEDGE:
-        case VTK_BEZIER_WEDGE:
-            return KindRule{CellKind::wedge, true};
+            return KindRule{CellKind::wedge, 18, wedge_18_places};
         case VTK_QUADRATIC_PYRAMID:
+            return KindRule{CellKind::pyramid, 13, pyramid_13_places};
         case VTK_TRIQUADRATIC_PYRAMID:
+            return KindRule{CellKind::pyramid, 19, pyramid_19_places};
+        case VTK_LAGRANGE_TETRAHEDRON:
+            return KindRule{CellKind::tetrahedron, 0, {}, true};
+        case VTK_LAGRANGE_HEXAHEDRON:
+            return KindRule{CellKind::hexahedron, 0, {}, true};
+        case VTK_LAGRANGE_WEDGE:
+            return KindRule{CellKind::wedge, 0, {}, true};
+        // The inner control points of a Bézier cell do not lie on it; its corners do.
+        case VTK_BEZIER_TETRAHEDRON:
+            return KindRule{CellKind::tetrahedron};
+        case VTK_BEZIER_HEXAHEDRON:
+            return KindRule{CellKind::hexahedron};
+        case VTK_BEZIER_WEDGE:
+            return KindRule{CellKind::wedge};
         case VTK_LAGRANGE_PYRAMID:
         case VTK_BEZIER_PYRAMID:
-            return KindRule{CellKind::pyramid, true};
+            return KindRule{CellKind::pyramid};
         default:
             return std::nullopt;
     }
@@ -146,18 +184,11 @@ void require_supported_kinds(const TypeCounts& counts, const fs::path& place) {
     }
 }
 
-void require_rows(vtkDataArray& array, const std::string& name, vtkIdType rows, const fs::path& place) {
-    if (array.GetNumberOfTuples() == rows) return;
-    throw Error({.kind = ErrorKind::format,
-                 .place = place.string() + ", array \"" + name + "\"",
-                 .expected = std::to_string(rows) + " rows",
-                 .found = std::to_string(array.GetNumberOfTuples()),
-                 .advice = "the file is damaged: write it again"});
-}
-
 struct VolumeCells {
     CellList cells;
-    std::vector<std::uint64_t> rows;  // #C: where each cell stands in the file, 0-based; empty when all cells are taken
+    CurvedCells curved;
+    std::vector<std::uint64_t> rows;  // #C: where each cell stands in the file, 0-based; empty when that is its own number
+    std::size_t in_file = 0;          // volume cells there, before Lagrange cells are cut
     std::size_t ghosts = 0;           // volume cells left out
 };
 
@@ -167,7 +198,8 @@ public:
     // Throws Error (format) when there are marks, but not one for each of `rows` rows.
     GhostMarks(vtkDataSetAttributes& attributes, vtkIdType rows, const fs::path& place)
         : marks_(attributes.GetArray(vtkDataSetAttributes::GhostArrayName())) {
-        if (marks_) require_rows(*marks_, vtkDataSetAttributes::GhostArrayName(), rows, place);
+        if (marks_)
+            require_rows(*marks_, vtkDataSetAttributes::GhostArrayName(), static_cast<std::size_t>(rows), place);
     }
 
     bool has(vtkIdType row, int bits) const {
@@ -190,9 +222,11 @@ public:
           points_(points),
           cell_marks_(*grid.GetCellData(), grid.GetNumberOfCells(), place),
           point_marks_(*grid.GetPointData(), points_, place),
+          degrees_(grid.GetCellData()->GetHigherOrderDegrees()),
           place_(place) {}
 
-    VolumeCells read() {
+    // Cells of higher order by their corners only, unless `at_nodes`.
+    VolumeCells read(bool at_nodes) {
         VolumeCells result;
         std::vector<VertexId>& list = result.cells.vertices;
         // At most so many but for polyhedra; growing by doubling would hold up to three times as much.
@@ -203,11 +237,14 @@ public:
             const int type = types_.GetValue(cell_);
             const std::optional<KindRule> rule = rule_for(type);
             if (!rule) continue;
+            ++result.in_file;
             hidden_ = cell_marks_.has(cell_, vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL);
             if (rule->kind == CellKind::polyhedron) {
                 append_face_stream(list);
             } else {
-                append_vertices(*rule, list);
+                append_nodes(*rule);
+                list.insert(list.end(), nodes_.begin(),
+                            nodes_.begin() + static_cast<std::ptrdiff_t>(vertex_count(rule->kind)));
                 // A voxel counts through x, then y; a hexahedron goes around.
                 if (type == VTK_VOXEL) {
                     std::swap(list.end()[-6], list.end()[-5]);
@@ -219,19 +256,31 @@ public:
                 ++result.ghosts;
                 continue;
             }
-            // Rows are kept from the first one on that was passed over.
-            const std::size_t taken = result.cells.size();
-            if (taken != static_cast<std::size_t>(cell_) && result.rows.empty()) {
-                result.rows.resize(taken);
-                std::iota(result.rows.begin(), result.rows.end(), std::uint64_t{0});
+            if (at_nodes && !rule->places.empty()) result.curved.add(result.cells.size(), nodes_, rule->places);
+            if (const int order = at_nodes && rule->is_lagrange ? lagrange_order(rule->kind) : 1; order > 1) {
+                list.resize(begin);
+                append_lagrange_pieces(rule->kind, order, nodes_, result.cells);
+            } else {
+                result.cells.kinds.push_back(rule->kind);
             }
-            if (taken != static_cast<std::size_t>(cell_)) result.rows.push_back(static_cast<std::uint64_t>(cell_));
-            result.cells.kinds.push_back(rule->kind);
+            add_rows(result);
         }
         return result;
     }
 
 private:
+    // The row of the cell at hand for what was appended of it. Rows are kept from the first one on that differs from its
+    // cell's own number.
+    void add_rows(VolumeCells& result) const {
+        const std::size_t cells = result.cells.size();
+        if (result.rows.empty() && cells == static_cast<std::size_t>(cell_) + 1) return;
+        if (result.rows.empty()) {
+            result.rows.resize(std::min(cells, static_cast<std::size_t>(cell_)));
+            std::iota(result.rows.begin(), result.rows.end(), std::uint64_t{0});
+        }
+        result.rows.resize(cells, static_cast<std::uint64_t>(cell_));
+    }
+
     [[noreturn]] void fail(ErrorKind kind, const std::string& expected, const std::string& found) const {
         throw Error({.kind = kind,
                      .place = place_.string() + ", cell " + std::to_string(cell_),
@@ -248,27 +297,39 @@ private:
         list.push_back(static_cast<VertexId>(id));
     }
 
-    void append_vertices(const KindRule& rule, std::vector<VertexId>& list) {
+    // All nodes of the cell into nodes_.
+    void append_nodes(const KindRule& rule) {
+        nodes_.clear();
         if (cells_.IsStorage64Bit()) {
-            append_vertices(rule, *cells_.GetOffsetsArray64(), *cells_.GetConnectivityArray64(), list);
+            append_nodes(rule, *cells_.GetOffsetsArray64(), *cells_.GetConnectivityArray64());
         } else {
-            append_vertices(rule, *cells_.GetOffsetsArray32(), *cells_.GetConnectivityArray32(), list);
+            append_nodes(rule, *cells_.GetOffsetsArray32(), *cells_.GetConnectivityArray32());
         }
     }
 
     template <class Array>
-    void append_vertices(const KindRule& rule, Array& offsets, Array& connectivity, std::vector<VertexId>& list) {
+    void append_nodes(const KindRule& rule, Array& offsets, Array& connectivity) {
         const vtkIdType begin = offsets.GetValue(cell_);
         const vtkIdType end = offsets.GetValue(cell_ + 1);
-        const auto corners = static_cast<vtkIdType>(vertex_count(rule.kind));
-        const bool fits = rule.corners_only ? end - begin >= corners : end - begin == corners;
+        const auto count = static_cast<vtkIdType>(rule.nodes > 0 ? rule.nodes : vertex_count(rule.kind));
+        const bool fits = rule.nodes == 0 ? end - begin >= count : end - begin == count;
         if (begin < 0 || end < begin || end > connectivity.GetNumberOfValues() || !fits) {
-            fail(ErrorKind::format, std::to_string(corners) + " vertices",
+            fail(ErrorKind::format, std::to_string(count) + " vertices",
                  "those from " + std::to_string(begin) + " to " + std::to_string(end) + " of a list of " +
                      std::to_string(connectivity.GetNumberOfValues()));
         }
-        for (vtkIdType v = begin; v < begin + corners; ++v)
-            append_point(connectivity.GetValue(v), list);
+        for (vtkIdType v = begin; v < end; ++v)
+            append_point(connectivity.GetValue(v), nodes_);
+    }
+
+    // Of the cell whose nodes are at hand; 1 where its order differs from direction to direction.
+    int lagrange_order(CellKind kind) const {
+        const int order = order_of_lagrange_cell(kind, nodes_.size());
+        if (!degrees_ || cell_ >= degrees_->GetNumberOfTuples()) return order;
+        for (int d = 0; d < degrees_->GetNumberOfComponents(); ++d) {
+            if (degrees_->GetComponent(cell_, d) != order) return 1;
+        }
+        return order;
     }
 
     // The entry of VTK's face streams, or the Error (format) that it is not there.
@@ -307,10 +368,12 @@ private:
     vtkIdType points_;
     GhostMarks cell_marks_;
     GhostMarks point_marks_;
+    vtkDataArray* degrees_;  // orders of Lagrange cells in each direction; null: the same in all
     const fs::path& place_;
 
-    vtkIdType cell_ = 0;   // the one at hand
-    bool hidden_ = false;  // whether it is
+    vtkIdType cell_ = 0;           // the one at hand
+    std::vector<VertexId> nodes_;  // its nodes, corners first; of no polyhedron
+    bool hidden_ = false;          // whether it is
 };
 
 // How many entries of the list the cell that starts there has.
@@ -325,14 +388,14 @@ std::size_t entries_of(CellKind kind, const VertexId* first) {
 // Made when VTK's own lists are gone: 8 bytes per cell.
 void add_offsets(CellList& cells) {
     cells.offsets.reserve(cells.size() + 1);
-    cells.offsets.push_back(0);
+    cells.offsets.assign(1, 0);  // pieces of Lagrange cells came with theirs
     for (const CellKind kind : cells.kinds) {
         const std::uint64_t begin = cells.offsets.back();
         cells.offsets.push_back(begin + entries_of(kind, cells.vertices.data() + begin));
     }
 }
 
-VolumeCells read_cells(vtkUnstructuredGrid& grid, vtkIdType points, const fs::path& place) {
+VolumeCells read_cells(vtkUnstructuredGrid& grid, vtkIdType points, const fs::path& place, bool at_nodes) {
     vtkUnsignedCharArray* types = grid.GetCellTypesArray();
     vtkCellArray* cells = grid.GetCells();
     require_supported_kinds(types ? count_types(*types) : TypeCounts(), place);
@@ -343,32 +406,12 @@ VolumeCells read_cells(vtkUnstructuredGrid& grid, vtkIdType points, const fs::pa
                      .found = std::to_string(cells ? cells->GetNumberOfCells() : 0),
                      .advice = "the file is damaged: write it again"});
     }
-    return VolumeCellReader(grid, points, place).read();
-}
-
-// ---- Unstructured grids ----
-
-// The numeric arrays of `attributes`, converted by `convert(array, name)` and removed one after the other, so that few of
-// them are held twice; texts and ghost marks are left out and left where they are.
-template <class Convert>
-std::vector<Field> take_fields(vtkDataSetAttributes& attributes, vtkIdType rows, const fs::path& place,
-                               Convert convert) {
-    std::vector<Field> fields;
-    for (int i = 0, number = 0; i < attributes.GetNumberOfArrays(); ++i, ++number) {
-        vtkDataArray* array = attributes.GetArray(i);
-        if (!array || array->GetNumberOfComponents() < 1) continue;
-        const std::string name = array->GetName() ? array->GetName() : "unnamed " + std::to_string(number);
-        if (name == vtkDataSetAttributes::GhostArrayName()) continue;
-        require_rows(*array, name, rows, place);
-        fields.push_back(convert(*array, name));
-        attributes.RemoveArray(i--);
-    }
-    return fields;
+    return VolumeCellReader(grid, points, place).read(at_nodes);
 }
 
 }  // namespace
 
-Dataset to_dataset(vtkUnstructuredGrid& grid, const fs::path& place, const std::string& format) {
+Dataset to_dataset(vtkUnstructuredGrid& grid, const fs::path& place, const std::string& format, int subdivide) {
     Dataset dataset;
     dataset.source = place.string();
     dataset.format = format;
@@ -376,20 +419,21 @@ Dataset to_dataset(vtkUnstructuredGrid& grid, const fs::path& place, const std::
     const vtkIdType cells = grid.GetNumberOfCells();
     if (grid.GetPoints()) dataset.points = to_points(*grid.GetPoints(), place);
     grid.SetPoints(nullptr);
-    VolumeCells volume = read_cells(grid, points, place);
+    VolumeCells volume = read_cells(grid, points, place, subdivide > 0);
     grid.SetCells(VTK_TETRA, vtkNew<vtkCellArray>());
     add_offsets(volume.cells);
     dataset.cells = std::move(volume.cells);
     dataset.ghost_cells = volume.ghosts;
-    dataset.skipped_cells = static_cast<std::size_t>(cells) - dataset.cells.size() - dataset.ghost_cells;
+    dataset.skipped_cells = static_cast<std::size_t>(cells) - volume.in_file;
     dataset.point_fields =
-        take_fields(*grid.GetPointData(), points, place,
-                    [](vtkDataArray& array, const std::string& name) { return to_field(array, name); });
+        to_fields(*grid.GetPointData(), static_cast<std::size_t>(points), place,
+                  [](vtkDataArray& array, const std::string& name) { return to_field(array, name); });
     dataset.cell_fields =
-        take_fields(*grid.GetCellData(), cells, place, [&](vtkDataArray& array, const std::string& name) {
-            const bool all = dataset.cells.size() == static_cast<std::size_t>(cells);
-            return all ? to_field(array, name) : to_field(array, name, volume.rows);
-        });
+        to_fields(*grid.GetCellData(), static_cast<std::size_t>(cells), place,
+                  [&](vtkDataArray& array, const std::string& name) {
+                      return volume.rows.empty() ? to_field(array, name) : to_field(array, name, volume.rows);
+                  });
+    subdivide_at_nodes(dataset, volume.curved);
     return dataset;
 }
 

@@ -25,7 +25,7 @@ Dataset read_with_vtk(FileFormat format, const std::filesystem::path& file, cons
 Dataset read_vtk_xml(const std::filesystem::path& file, const ReadOptions& options);
 // Whether it only names the files that hold the data: a partitioned or multi-block file or a collection.
 bool is_vtk_xml_index(const std::filesystem::path& file);
-Dataset read_vtk_legacy(const std::filesystem::path& file);
+Dataset read_vtk_legacy(const std::filesystem::path& file, const ReadOptions& options);
 Dataset read_openfoam(const std::filesystem::path& file, const ReadOptions& options);
 Dataset read_ensight(const std::filesystem::path& file, const ReadOptions& options);
 Dataset read_exodus(const std::filesystem::path& file, const ReadOptions& options);
@@ -35,8 +35,10 @@ void require_whole_openfoam_fields(const std::filesystem::path& folder, double t
 // netcdf_size.cpp: throws Error (format) for a classic netCDF file (Exodus II) that is shorter than its header says.
 void require_whole_netcdf(const std::filesystem::path& file);
 Dataset read_cgns(const std::filesystem::path& file, const ReadOptions& options);
+Dataset read_fluent(const std::filesystem::path& file, const ReadOptions& options);
 Dataset read_meta_image(const std::filesystem::path& file);
 Dataset read_nrrd(const std::filesystem::path& file);
+Dataset read_slc(const std::filesystem::path& file);
 
 // ---- vtk_structured.cpp ----
 
@@ -53,7 +55,7 @@ Dataset structured_to_dataset(vtkDataSet& grid, const std::filesystem::path& fil
 // ("fluid/internalMesh"). Throws Error as `to_dataset` and `require_known_blocks` do, and Error (data) when there is no
 // volume block.
 Dataset blocks_to_dataset(vtkDataObject& data, const std::filesystem::path& file, const std::string& format,
-                          const std::vector<std::string>& wanted);
+                          const ReadOptions& options);
 
 // ---- vtk_time.cpp ----
 

@@ -12,10 +12,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "mesh/error.hpp"
-#include "mesh/merge_blocks.hpp"
+#include "mesh/hidden_cells.hpp"
 #include "mesh/vtk_conversion.hpp"
 #include "mesh/vtk_readers.hpp"
 
@@ -90,22 +89,6 @@ std::vector<glm::dvec3> points_of(vtkDataSet& grid, const fs::path& file) {
     return points;
 }
 
-std::vector<Field> fields_of(vtkDataSetAttributes& attributes, std::size_t rows, const fs::path& file) {
-    std::vector<Field> fields;
-    for (int i = 0; i < attributes.GetNumberOfArrays(); ++i) {
-        vtkDataArray* array = attributes.GetArray(i);
-        if (!array || array->GetNumberOfComponents() < 1) continue;
-        const std::string name = array->GetName() ? array->GetName() : "unnamed " + std::to_string(i);
-        if (name == vtkDataSetAttributes::GhostArrayName()) continue;
-        if (array->GetNumberOfTuples() != static_cast<vtkIdType>(rows)) {
-            fail(ErrorKind::format, file.string() + ", array \"" + name + "\"", std::to_string(rows) + " rows",
-                 std::to_string(array->GetNumberOfTuples()), "the file is damaged: write it again");
-        }
-        fields.push_back(to_field(*array, name));
-    }
-    return fields;
-}
-
 bool is_visible(vtkDataSet& grid, vtkIdType cell) {
     if (auto* curvilinear = vtkStructuredGrid::SafeDownCast(&grid)) return curvilinear->IsCellVisible(cell) != 0;
     if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(&grid)) return rectilinear->IsCellVisible(cell) != 0;
@@ -113,38 +96,19 @@ bool is_visible(vtkDataSet& grid, vtkIdType cell) {
 }
 
 // Leaves out the cells that are blanked or touch a blanked point; ghost copies of a neighbour's cells, too.
-void remove_blanked(Dataset& dataset, vtkDataSet& grid) {
+void leave_out_blanked(Dataset& dataset, vtkDataSet& grid) {
     if (!grid.HasAnyGhostCells() && !grid.HasAnyGhostPoints() && !grid.HasAnyBlankCells() &&
         !grid.HasAnyBlankPoints()) {
         return;
     }
     vtkUnsignedCharArray* ghosts = grid.GetCellGhostArray();
-    CellList kept;
-    kept.offsets.push_back(0);
-    std::vector<std::size_t> rows;
-    const CellList all = hexahedra_of(*dataset.grid);
-    for (std::size_t c = 0; c < all.size(); ++c) {
+    std::vector<bool> hidden(dataset.grid->cells());
+    for (std::size_t c = 0; c < hidden.size(); ++c) {
         const auto cell = static_cast<vtkIdType>(c);
         const bool copy = ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL) != 0;
-        if (copy || !is_visible(grid, cell)) continue;
-        rows.push_back(c);
-        kept.kinds.push_back(all.kinds[c]);
-        kept.vertices.insert(kept.vertices.end(), all.vertices.begin() + static_cast<std::ptrdiff_t>(8 * c),
-                             all.vertices.begin() + static_cast<std::ptrdiff_t>(8 * c + 8));
-        kept.offsets.push_back(kept.vertices.size());
+        hidden[c] = copy || !is_visible(grid, cell);
     }
-    for (Field& field : dataset.cell_fields) {
-        const auto components = static_cast<std::size_t>(field.components);
-        std::vector<double> values;
-        for (const std::size_t row : rows) {
-            for (std::size_t k = 0; k < components; ++k)
-                values.push_back(field.values[row * components + k]);
-        }
-        field.values = std::move(values);
-    }
-    dataset.ghost_cells = all.size() - kept.size();
-    dataset.grid.reset();
-    dataset.cells = std::move(kept);
+    leave_out_cells(dataset, hidden);
 }
 
 }  // namespace
@@ -159,9 +123,10 @@ Dataset structured_to_dataset(vtkDataSet& grid, const fs::path& file, const std:
     dataset.format = format;
     dataset.grid = require_volume(grid, file);
     dataset.points = points_of(grid, file);
-    dataset.point_fields = fields_of(*grid.GetPointData(), dataset.points.size(), file);
-    dataset.cell_fields = fields_of(*grid.GetCellData(), dataset.grid->cells(), file);
-    remove_blanked(dataset, grid);
+    const auto whole = [](vtkDataArray& array, const std::string& name) { return to_field(array, name); };
+    dataset.point_fields = to_fields(*grid.GetPointData(), dataset.points.size(), file, whole);
+    dataset.cell_fields = to_fields(*grid.GetCellData(), dataset.grid->cells(), file, whole);
+    leave_out_blanked(dataset, grid);
     if (dataset.cell_count() == 0) {
         fail(ErrorKind::data, file, "volume cells", "a grid that is blanked as a whole", "check its ghost array");
     }

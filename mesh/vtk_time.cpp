@@ -39,7 +39,7 @@ Dataset read_blocks(vtkAlgorithm& reader, const std::filesystem::path& file, con
                     const ReadOptions& options) {
     const TimeSteps steps = choose_time(reader, file, options.time);
     update(reader, file);
-    Dataset dataset = blocks_to_dataset(*reader.GetOutputDataObject(0), file, format, options.blocks);
+    Dataset dataset = blocks_to_dataset(*reader.GetOutputDataObject(0), file, format, options);
     dataset.times = steps.all;
     dataset.time = steps.read;
     return dataset;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The program as a user meets it: exit codes, messages, files. Meshes are small files written here.
+#include <limits>
+#include <cstring>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -188,6 +190,42 @@ TEST_F(CommandLine, CellFieldsConstantOrAveraged) {
     EXPECT_EQ(run("render cube.vtk -o a.exr --size 20x20 --field rank --cell-values averaged").code, 0);
     EXPECT_EQ(run("render cube.vtk -o b.exr --size 20x20 --field U:x").code, 0);
     EXPECT_EQ(run("render cube.vtk -o b.exr --size 20x20 --cell-values often").code, 2);
+}
+
+TEST_F(CommandLine, RawVolumesAndHowToReadThem) {
+    write("voxels.raw", "??" + std::string(24, '\x07'));
+    const Outcome info = run("info voxels.raw --dims 2 3 4 --type int8 --spacing 1 1 0.5 --header 2");
+    EXPECT_EQ(info.code, 0) << info.text;
+    for (const char* words : {"raw volume", "24 (2x3x4)", "z 0 .. 1.5", "7 .. 7",
+                              "render voxels.raw --dims 2 3 4 --type int8 --spacing 1 1 0.5 --origin 0 0 0 --header 2 -o"}) {
+        EXPECT_NE(info.text.find(words), std::string::npos) << "no \"" << words << "\" in:\n" << info.text;
+    }
+    expect_refused("info voxels.raw --dims 2 3 4 --type int8", {"voxels.raw", "24 bytes", "26 bytes"});
+    expect_refused("info voxels.raw", {"--dims"});
+    for (const char* usage : {"info voxels.raw --dims 2 3 4", "info voxels.raw --type int8", "info voxels.raw --dims 2 3 --type int8",
+                              "info voxels.raw --dims 2 3 4 --type int9", "info voxels.raw --dims 2 3 4 --type int8 --spacing 1 nan 1",
+                              "info voxels.raw --header 2", "info cube.vtk --subdivide 2"}) {
+        EXPECT_EQ(run(usage).code, 2) << usage;
+    }
+}
+
+// One corner of the only cell: four of its five tetrahedra have it. The fifth is 0 throughout, which is all there is to see
+// without them, and transparent once there are larger values.
+TEST_F(CommandLine, ValuesThatAreNotFiniteBecomeANumberOnDemand) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::string bytes(8 * sizeof(float), '\0');
+    std::memcpy(bytes.data() + 4, &nan, sizeof nan);
+    write("nan.raw", bytes);
+    const std::string command = "render nan.raw --dims 2 2 2 --type float32 -o nan.exr --size 20x20";
+    const Outcome left_out = run(command);
+    EXPECT_EQ(left_out.code, 0) << left_out.text;
+    EXPECT_NE(left_out.text.find("1 of 8 values are not finite"), std::string::npos) << left_out.text;
+    const Outcome drawn = run(command + " --nan 1");
+    EXPECT_EQ(drawn.code, 0) << drawn.text;
+    EXPECT_EQ(drawn.text.find("not finite"), std::string::npos) << drawn.text;
+    EXPECT_NE(left_out.text.find("1 of 5 cells"), std::string::npos) << left_out.text;
+    EXPECT_NE(drawn.text.find("4 of 5 cells"), std::string::npos) << drawn.text;
+    EXPECT_EQ(run(command + " --nan inf").code, 2);
 }
 
 TEST_F(CommandLine, HelpVersionAndUsage) {

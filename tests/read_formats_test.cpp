@@ -25,6 +25,7 @@
 #include <vtkXMLMultiBlockDataWriter.h>
 
 #include "mesh/merge_blocks.hpp"
+#include "mesh/tetrahedralize.hpp"
 #include "tests/read_fixtures.hpp"
 
 namespace cellproj {
@@ -208,7 +209,8 @@ TEST(ReadStructured, LeavesBlankedCellsOut) {
     EXPECT_FALSE(dataset.grid);
     EXPECT_EQ(dataset.cells.size(), 4U);
     EXPECT_EQ(dataset.ghost_cells, 2U);
-    EXPECT_EQ(dataset.points.size(), point_count);
+    EXPECT_EQ(dataset.points.size(), point_count - 4);  // without those that cells 1 and 5 alone had
+    EXPECT_EQ(field(dataset.point_fields, "x + 10 y").values.size(), point_count - 4);
     EXPECT_EQ(field(dataset.cell_fields, "number").values, (std::vector<double>{0, 2, 3, 4}));
 }
 
@@ -292,6 +294,110 @@ TEST(ReadBlocks, Partitioned) {
     EXPECT_EQ(whole.cells.vertices, (std::vector<VertexId>{0, 1, 2, 3, 4, 5, 6, 7}));
     expect_error(write("lost.pvtu", head + "<Piece Source=\"a.vtu\"/><Piece Source=\"c.vtu\"/>\n" + tail),
                  ErrorKind::format, "");
+}
+
+// Two pieces of a grid of 5 by 4 by 2 points that share the plane i = 2; `piece` says what a piece file holds.
+TEST(ReadBlocks, PartitionedGrids) {
+    struct Kind {
+        const char* suffix;
+        const char* type;
+        const char* head;   // attributes of the whole
+        const char* parts;  // what the whole says of its arrays
+    };
+    const std::array<Kind, 3> kinds{
+        {{"vts", "StructuredGrid", "", "<PPoints><PDataArray type=\"Float64\" NumberOfComponents=\"3\"/></PPoints>"},
+         {"vtr", "RectilinearGrid", "",
+          "<PCoordinates><PDataArray type=\"Float64\"/><PDataArray type=\"Float64\"/><PDataArray "
+          "type=\"Float64\"/></PCoordinates>"},
+         {"vti", "ImageData", " Origin=\"1 2 -1\" Spacing=\"0.5 1 2\"", ""}}};
+    for (const Kind& kind : kinds) {
+        SCOPED_TRACE(kind.suffix);
+        for (const int part : {0, 1}) {
+            std::array<int, 6> extent{2 * part, 2 * part + 2, 0, 3, 0, 1};
+            const std::string name = std::string(part == 0 ? "a." : "b.") + kind.suffix;
+            if (kind.suffix == std::string("vts")) {
+                const auto grid = curvilinear();
+                grid->SetExtent(extent.data());
+                for (vtkIdType p = 0; part == 1 && p < grid->GetNumberOfPoints(); ++p) {
+                    glm::dvec3 x;
+                    grid->GetPoint(p, &x.x);
+                    grid->GetPoints()->SetPoint(p, x.x + 1, x.y, x.z);
+                }
+                write_xml(name, *grid);
+            } else if (kind.suffix == std::string("vtr")) {
+                const auto grid = rectilinear();
+                grid->SetExtent(extent.data());
+                for (vtkIdType i = 0; part == 1 && i < 3; ++i)
+                    grid->GetXCoordinates()->SetComponent(i, 0, grid->GetXCoordinates()->GetComponent(i, 0) + 1);
+                write_xml(name, *grid);
+            } else {
+                const auto grid = image();
+                grid->SetExtent(extent.data());
+                write_xml(name, *grid);
+            }
+        }
+        const std::string type = std::string("P") + kind.type;
+        const std::string text =
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type + "\" version=\"0.1\">\n<" + type +
+            " WholeExtent=\"0 4 0 3 0 1\" GhostLevel=\"0\"" + kind.head +
+            ">\n<PPointData><PDataArray type=\"Float64\" Name=\"x + 10 y\"/></PPointData>\n<PCellData><PDataArray "
+            "type=\"Float64\" Name=\"number\"/></PCellData>\n" +
+            kind.parts + "<Piece Extent=\"0 2 0 3 0 1\" Source=\"a." + kind.suffix +
+            "\"/><Piece Extent=\"2 4 0 3 0 1\" Source=\"b." + kind.suffix + "\"/>\n</" + type + ">\n</VTKFile>\n";
+        const Dataset dataset = read(write(std::string("whole.p") + kind.suffix, text));
+        ASSERT_TRUE(dataset.grid);
+        EXPECT_EQ(dataset.grid->ni, 5U);
+        EXPECT_EQ(dataset.grid->cells(), 12U);
+        ASSERT_EQ(dataset.points.size(), 40U);
+        EXPECT_EQ(dataset.points[4], position(4, 0, 0));
+        EXPECT_EQ(dataset.points[39], position(4, 3, 1));
+        const std::vector<double>& numbers = field(dataset.cell_fields, "number").values;
+        EXPECT_EQ(std::vector<double>(numbers.begin(), numbers.begin() + 4), (std::vector<double>{0, 1, 0, 1}));
+        EXPECT_EQ(field(dataset.point_fields, "x + 10 y").values.size(), 40U);
+    }
+}
+
+// ---- Fluent ----
+
+// A case of a cube and a pyramid on top, as Fluent writes it: nodes, cells by type and faces between two cells, ids
+// from 1, in hexadecimal.
+std::string fluent_case() {
+    return "(0 \"cube and pyramid\")\n(2 3)\n(10 (0 1 9 0 3))\n(10 (1 1 9 1 3)(\n"
+           "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n0.5 0.5 2\n))\n"
+           "(12 (0 1 2 0))\n(12 (2 1 2 1 0)(\n4 5\n))\n(13 (0 1 a 0))\n(13 (3 1 1 2 0)(\n4 5 6 7 8 1 2\n))\n"
+           "(13 (4 2 a 3 0)(\n4 1 4 3 2 1 0\n4 1 2 6 5 1 0\n4 2 3 7 6 1 0\n4 3 4 8 7 1 0\n4 4 1 5 8 1 0\n"
+           "3 5 6 9 2 0\n3 6 7 9 2 0\n3 7 8 9 2 0\n3 8 5 9 2 0\n))\n"
+           "(45 (2 fluid air)())\n(45 (3 interior inside)())\n(45 (4 wall skin)())\n";
+}
+
+TEST(ReadFluent, IsToldFromGmshByItsContent) {
+    for (const char* name : {"mesh.msh", "mesh.cas"}) {
+        const Dataset dataset = read(write(name, fluent_case()));
+        EXPECT_EQ(dataset.format, "Fluent");
+        EXPECT_EQ(dataset.points.size(), 9U);
+        EXPECT_EQ(dataset.cells.kinds, (std::vector<CellKind>{CellKind::hexahedron, CellKind::pyramid}));
+        const TetMesh mesh = tetrahedralize(dataset);
+        double volume = 0;
+        for (CellId t = 0; t < mesh.tets.size(); ++t)
+            volume += signed_volume(mesh, t);
+        EXPECT_DOUBLE_EQ(volume, 1.0 + 1.0 / 3.0);
+    }
+}
+
+TEST(ReadFluent, TakesTheValuesBesideIt) {
+    const fs::path file = write("flow.cas", fluent_case());
+    // Subsection 1 is the pressure: zone 2, one component, cells 1 to 2.
+    write("flow.dat", "(0 \"values\")\n(300 (1 2 1 0 0 1 2)(\n3.5\n-1.25\n))\n");
+    const Dataset dataset = read(file);
+    ASSERT_EQ(dataset.cell_fields.size(), 1U);
+    EXPECT_EQ(dataset.cell_fields[0].name, "PRESSURE");
+    EXPECT_EQ(dataset.cell_fields[0].values, (std::vector<double>{3.5, -1.25}));
+}
+
+TEST(ReadFluent, PolyhedraWithoutTheirFacesAreRefused) {
+    std::string text = fluent_case();
+    text.replace(text.find("\n4 5\n))\n(13"), 5, "\n7 7\n");
+    expect_error(write("poly.cas", text), ErrorKind::data, "convex point set");
 }
 
 // ---- Time ----

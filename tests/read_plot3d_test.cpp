@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <random>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -94,22 +95,24 @@ std::string plot3d_grid(const Plot3dForm& form, int seventh = 1,
 }
 
 // Density 1 + p, momentum (2 p, 0, 0), stagnation energy 50.
-std::string plot3d_solution(const Plot3dForm& form, const std::array<int, 3>& size = dims) {
+std::string plot3d_solution(const Plot3dForm& form, const std::vector<std::array<int, 3>>& blocks = {dims}) {
     Plot3dWriter writer(form);
-    writer.header({size});
-    for (const double free_stream : {2.0, 0.0, 1e6, 0.0})
-        writer.real(free_stream);
-    writer.end_group();
-    const int count = size[0] * size[1] * size[2];
-    for (int p = 0; p < count; ++p)
-        writer.real(1 + p);
-    for (int p = 0; p < count; ++p)
-        writer.real(2 * p);
-    for (int p = 0; p < 2 * count; ++p)
-        writer.real(0);
-    for (int p = 0; p < count; ++p)
-        writer.real(50);
-    writer.end_group();
+    writer.header(blocks);
+    for (const std::array<int, 3>& size : blocks) {
+        for (const double free_stream : {2.0, 0.0, 1e6, 0.0})
+            writer.real(free_stream);
+        writer.end_group();
+        const int count = size[0] * size[1] * size[2];
+        for (int p = 0; p < count; ++p)
+            writer.real(1 + p);
+        for (int p = 0; p < count; ++p)
+            writer.real(2 * p);
+        for (int p = 0; p < 2 * count; ++p)
+            writer.real(0);
+        for (int p = 0; p < count; ++p)
+            writer.real(50);
+        writer.end_group();
+    }
     return writer.bytes();
 }
 
@@ -160,7 +163,7 @@ TEST(ReadPlot3d, IsTakenForItsSuffixesOrForASolution) {
     const fs::path solution = write("a.q", plot3d_solution(plain));
     EXPECT_EQ(error_of(other).kind(), ErrorKind::format);
     EXPECT_TRUE(read(other, {solution}).grid);
-    expect_error(solution, ErrorKind::format, "binary PLOT3D grid", {solution});  // a solution is no grid
+    expect_error(solution, ErrorKind::format, "a PLOT3D grid", {solution});  // a solution is no grid
 }
 
 TEST(ReadPlot3dErrors, GridsWhoseSizeDoesNotFit) {
@@ -170,17 +173,110 @@ TEST(ReadPlot3dErrors, GridsWhoseSizeDoesNotFit) {
         expect_error(write("cut.xyz", whole.substr(0, size)), ErrorKind::format, std::to_string(size) + " bytes");
     }
     expect_error(write("long.xyz", whole + "x"), ErrorKind::format, "3 x 4 x 5");
-    expect_error(write("text.x", "3 4 5\n0.0 1.0 2.0\n"), ErrorKind::format, "binary PLOT3D grid");
+    expect_error(write("text.x", "3 4 5\n0.0 1.0 2.0\n"), ErrorKind::format, "found 6 numbers");
     expect_error(write("huge.x", std::string(400, '\x7f')), ErrorKind::format, "400 bytes");
     expect_error(write("zero.x", std::string(400, '\0')), ErrorKind::format, "400 bytes");
 }
 
-TEST(ReadPlot3dErrors, GridsThatAreNotASingleVolume) {
+TEST(ReadPlot3dErrors, GridsWithoutVolume) {
     const Plot3dForm counted{false, true, true, false, false};
-    expect_error(write("two.xyz", plot3d_grid(counted, 1, {{3, 4, 5}, {2, 2, 7}})), ErrorKind::data, "2 blocks");
     expect_error(write("flat.xyz", plot3d_grid(plain, 1, {{3, 4, 1}})), ErrorKind::data, "3 x 4 x 1");
+    expect_error(write("flats.xyz", plot3d_grid(counted, 1, {{3, 4, 1}, {1, 4, 5}})), ErrorKind::data,
+                 "1 more without");
     const Plot3dForm blanked{true, false, false, false, true};
-    expect_error(write("holes.xyz", plot3d_grid(blanked, 0)), ErrorKind::data, "1 blanked points");
+    expect_error(write("blank.xyz", plot3d_grid(blanked, 0, {{2, 2, 2}})), ErrorKind::data, "blanked as a whole");
+}
+
+// ---- Several blocks, holes and text ----
+
+double total_volume(const Dataset& dataset) {
+    const TetMesh mesh = tetrahedralize(dataset);
+    double sum = 0;
+    for (CellId t = 0; t < mesh.tets.size(); ++t)
+        sum += signed_volume(mesh, t);
+    return sum;
+}
+
+TEST(ReadPlot3d, BlocksOfAllLayoutsBecomeOneMesh) {
+    const std::vector<std::array<int, 3>> blocks{{3, 4, 5}, {3, 1, 2}, {2, 2, 7}};
+    for (int bits = 0; bits < 16; ++bits) {
+        const Plot3dForm form{(bits & 1) != 0, (bits & 2) != 0, true, (bits & 4) != 0, (bits & 8) != 0};
+        SCOPED_TRACE("layout " + std::to_string(bits));
+        const fs::path grid = write("grid.xyz", plot3d_grid(form, 1, blocks));
+        const fs::path solution = write("solution.q", plot3d_solution(form, blocks));
+        const Dataset both = read(grid, {solution});
+        EXPECT_EQ(both.blocks, (std::vector<std::string>{"block 1", "block 3"}));
+        EXPECT_EQ(both.skipped_blocks, 1U);
+        EXPECT_EQ(both.points.size(), 60U + 28U);
+        EXPECT_EQ(both.cells.size(), 24U + 6U);
+        EXPECT_EQ(both.points[60 + 27], glm::dvec3(1, 10, 600));
+        EXPECT_EQ(field_named(both, "Density").values[60 + 27], 28.0);  // each block counts anew
+        EXPECT_NEAR(total_volume(both), 1000.0 * (24 + 6), 1e-9);       // boxes of 1 by 10 by 100; 150 roundings of 3e4
+        const Dataset last = read(grid, {.solution = solution, .blocks = {"block 3"}});
+        ASSERT_TRUE(last.grid);
+        EXPECT_EQ(last.grid->nk, 7U);
+        EXPECT_EQ(field_named(last, "Density").values[27], 28.0);
+    }
+    const Plot3dForm counted{false, true, true, false, false};
+    const fs::path grid = write("grid.xyz", plot3d_grid(counted, 1, blocks));
+    expect_error(grid, ErrorKind::option, "\"block 1\", \"block 3\"", {.blocks = {"block 2"}});
+    const Error other = error_of(grid, {write("other.q", plot3d_solution(counted, {{3, 4, 5}, {3, 1, 2}, {2, 2, 6}}))});
+    EXPECT_NE(std::string(other.what()).find("2 x 2 x 7 points of block 3, found one for 2 x 2 x 6"), std::string::npos)
+        << other.what();
+    const Error fewer = error_of(grid, {write("fewer.q", plot3d_solution(counted, {{3, 4, 5}, {3, 1, 2}}))});
+    EXPECT_NE(std::string(fewer.what()).find("2 blocks"), std::string::npos) << fewer.what();
+}
+
+TEST(ReadPlot3d, LeavesOutTheCellsAroundHoles) {
+    const Plot3dForm blanked{true, false, false, true, true};
+    const fs::path solution = write("solution.q", plot3d_solution(blanked));
+    for (const int value : {1, 2, -3}) {  // the field, a wall, a point interpolated from block 3
+        const Dataset whole = read(write("whole.xyz", plot3d_grid(blanked, value)), {solution});
+        EXPECT_TRUE(whole.grid) << value;
+        EXPECT_EQ(whole.ghost_cells, 0U) << value;
+    }
+    // Point 7 is (1, 2, 0) of 3 by 4 by 5: inside the bottom face, a corner of four cells.
+    const Dataset holed = read(write("holed.xyz", plot3d_grid(blanked, 0)), {solution});
+    EXPECT_FALSE(holed.grid);
+    EXPECT_EQ(holed.cells.size(), 20U);
+    EXPECT_EQ(holed.ghost_cells, 4U);
+    EXPECT_NEAR(total_volume(holed), 1000.0 * 20, 1e-9);
+    EXPECT_EQ(holed.points.size(), 60U - 6U);  // (0..2, 2..3, 0) belong to these cells only
+    EXPECT_EQ(field_named(holed, "Density").values.size(), holed.points.size());
+    for (std::size_t p = 0; p < holed.points.size(); ++p) {
+        const glm::dvec3 x = holed.points[p];
+        EXPECT_EQ(field_named(holed, "Density").values[p], 1 + x.x + 3 * (x.y / 10 + 4 * x.z / 100));
+    }
+}
+
+TEST(ReadPlot3d, Text) {
+    std::string grid = "2\n2 2 2\n3, 2, 2\n", solution = grid;
+    for (const int ni : {2, 3}) {
+        const int count = 4 * ni;
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int p = 0; p < count; ++p)
+                grid += std::to_string(axis == 0 ? p % ni : axis == 1 ? p / ni % 2 : p / (2 * ni)) + ".0d0 ";
+            grid += "\n";
+        }
+        grid += ni == 2 ? "8*1\n" : "1 1 0 9*-2\n";
+        solution += "2.0 0 +1.0E6 0\n" + std::to_string(count) + "*1.5 " + std::to_string(3 * count) + "*0 " +
+                    std::to_string(count) + "*2.5e0\n";
+    }
+    const Dataset dataset = read(write("text.xyz", grid), {write("text.q", solution)});
+    EXPECT_EQ(dataset.format, "PLOT3D curvilinear grid, text");
+    EXPECT_EQ(dataset.blocks.size(), 2U);
+    EXPECT_EQ(dataset.cells.size(), 2U);  // of three: one touches the hole
+    EXPECT_EQ(dataset.ghost_cells, 1U);
+    EXPECT_NEAR(total_volume(dataset), 2.0, 1e-15);
+    EXPECT_EQ(field_named(dataset, "Density").values, std::vector<double>(16, 1.5));
+    EXPECT_EQ(field_named(dataset, "Pressure").values, std::vector<double>(16, (1.4 - 1.0) * 2.5));
+    EXPECT_EQ(field_named(dataset, "Mach").values, std::vector<double>(16, 0.0));
+    expect_error(write("text.xyz", grid + " 7"), ErrorKind::format, "numbers");
+    expect_error(write("text.xyz", grid + std::string(5000, ' ') + "x"), ErrorKind::format,
+                 "line 12: expected nothing but numbers, found \"x\"");
+    expect_error(write("text.xyz", "2 2 2\n999999999999*0.5\n"), ErrorKind::format, "line 2");
+    const Error mixed = error_of(write("text.xyz", grid), {write("binary.q", plot3d_solution(plain))});
+    EXPECT_NE(std::string(mixed.what()).find("written as its grid was"), std::string::npos) << mixed.what();
 }
 
 TEST(ReadPlot3dErrors, SolutionsThatDoNotFit) {
@@ -193,7 +289,7 @@ TEST(ReadPlot3dErrors, SolutionsThatDoNotFit) {
         EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     };
     const std::string whole = plot3d_solution(plain);
-    refused(plot3d_solution(plain, {3, 5, 4}), ErrorKind::data, "one for 3 x 5 x 4");
+    refused(plot3d_solution(plain, {{3, 5, 4}}), ErrorKind::data, "one for 3 x 5 x 4");
     refused(whole.substr(0, whole.size() - 4), ErrorKind::format, "cut off");
     refused(whole + std::string(60 * 4, '\0'), ErrorKind::format, "five variables");
     refused(plot3d_solution({false, false, false, false, false}), ErrorKind::format, "byte order");
@@ -207,6 +303,33 @@ TEST(ReadPlot3dErrors, PointsThatAreNotFinite) {
     std::string bytes = plot3d_grid(plain);
     bytes.replace(12 + 4 * 5, 4, "\x7f\xc0\x00\x01", 4);
     expect_error(write("nan.xyz", bytes), ErrorKind::data, "point 5");
+}
+
+// Cut at 20 places and with 200 random bytes each: an Error that names the file, or a dataset that can be cut up.
+TEST(ReadPlot3dErrors, DamageIsSurvived) {
+    const Plot3dForm blanked{false, true, true, false, true};
+    std::string text = "1\n3 3 3\n";
+    for (int number = 0; number < 108; ++number)
+        text += std::to_string(number) + (number % 9 == 8 ? "\n" : " ");
+    std::mt19937 random(11);
+    for (const std::string& good : {plot3d_grid(plain), plot3d_grid(blanked, 0, {{3, 4, 5}, {2, 2, 7}}), text}) {
+        const auto survive = [](const std::string& bytes) {
+            const fs::path file = write("damaged.xyz", bytes);
+            try {
+                tetrahedralize(read(file));
+            } catch (const Error& error) {
+                EXPECT_NE(error.place().find("damaged.xyz"), std::string::npos) << error.what();
+            }
+        };
+        EXPECT_GT(read(write("good.xyz", good)).cell_count(), 0U);
+        for (std::size_t i = 0; i < 20; ++i)
+            survive(good.substr(0, good.size() * i / 20));
+        for (int i = 0; i < 200; ++i) {
+            std::string bytes = good;
+            bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
+            survive(bytes);
+        }
+    }
 }
 
 TEST_F(ReadSharedData, BluntFin) {

@@ -224,6 +224,14 @@ TEST(Range, LeavesOutWhatIsNotFinite) {
     EXPECT_EQ(none.not_finite, 1U);
 }
 
+TEST(WithFiniteValues, ReplacesNothingElse) {
+    const ScalarField field{"f", FieldLocation::cells, {1, nan, -infinity, 0, infinity, -2}};
+    const ScalarField finite = with_finite_values(field, 7);
+    EXPECT_EQ(finite.values, (std::vector<double>{1, 7, 7, 0, 7, -2}));
+    EXPECT_EQ(finite.location, FieldLocation::cells);
+    EXPECT_EQ(finite.name, "f");
+}
+
 TEST(Quantile, HasTheGivenShareOfTheFiniteValuesBelowIt) {
     std::vector<double> values{nan, infinity};
     for (int i = 99; i >= 0; --i)

@@ -160,14 +160,6 @@ TEST_P(GmshSample, IsTheSameInEveryVersion) {
 
 INSTANTIATE_TEST_SUITE_P(Gmsh, GmshSample, testing::Combine(testing::Values(2, 4), testing::Bool()));
 
-TEST(Gmsh, SecondOrderCellsKeepTheirCorners) {
-    std::string file = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n";
-    for (int i = 1; i <= 10; ++i)
-        file += std::to_string(i) + " " + std::to_string(i * i) + " 0 1\n";
-    file += "$EndNodes\n$Elements\n1\n1 11 0 4 3 2 1 5 6 7 8 9 10\n$EndElements\n";
-    EXPECT_EQ(read_gmsh(write("second.msh", file)).cells.vertices, (std::vector<VertexId>{3, 2, 1, 0}));
-}
-
 TEST(Gmsh, ErrorsTellTheLine) {
     const std::string good = gmsh_file(2, false, 1);
     const auto with = [&](const std::string& from, const std::string& to) {

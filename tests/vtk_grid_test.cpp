@@ -68,7 +68,7 @@ TEST(VtkGrid, VoxelsBecomeHexahedra) {
     EXPECT_DOUBLE_EQ(volume_of(dataset), 1.0);
 }
 
-TEST(VtkGrid, TakesTheCornersOfCellsOfHigherOrder) {
+TEST(VtkGrid, TakesTheCornersOfCellsOfHigherOrderOnDemand) {
     const auto grid = grid_with_points(5);
     // Twenty vertices; the corners are those of the cube, the others would be elsewhere.
     std::vector<vtkIdType> ids{0, 1, 3, 2, 4, 5, 7, 6};
@@ -78,7 +78,7 @@ TEST(VtkGrid, TakesTheCornersOfCellsOfHigherOrder) {
     const std::vector<vtkIdType> wedge{0, 1, 2, 4, 5, 6, 8, 9, 10, 11, 12, 13, 14, 15, 16};
     add_cell(*grid, VTK_QUADRATIC_WEDGE, wedge);
     add_cell(*grid, VTK_LAGRANGE_TETRAHEDRON, {0, 1, 2, 4, 8, 9, 10, 11, 12, 13});
-    const Dataset dataset = dataset_of(*grid);
+    const Dataset dataset = to_dataset(*grid, "grid.vtu", "a grid", 0);
     EXPECT_EQ(dataset.cells.kinds,
               (std::vector<CellKind>{CellKind::hexahedron, CellKind::wedge, CellKind::tetrahedron}));
     EXPECT_EQ(dataset.cells.offsets, (std::vector<std::uint64_t>{0, 8, 14, 18}));

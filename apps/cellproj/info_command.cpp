@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -125,6 +126,25 @@ std::string number(double x) {
     return {text.data(), end};
 }
 
+// The options without which the file is not read like this, each with a blank before it.
+std::string how_it_was_read(const InputOptions& options) {
+    std::ostringstream text;
+    if (!options.solution.empty()) text << " --q " << quoted(options.solution.string());
+    for (const std::string& block : options.blocks) text << " --block " << quoted(block);
+    if (options.time) text << " --time " << number(*options.time);
+    if (options.raw_dimensions.empty()) return text.str();
+    const auto add = [&](const char* name, const auto& values) {
+        text << " --" << name;
+        for (const auto& value : values) text << ' ' << value;
+    };
+    add("dims", options.raw_dimensions);
+    text << " --type " << options.raw_type << (options.raw.big_endian ? " --big-endian" : "");
+    add("spacing", options.raw_spacing);
+    add("origin", options.raw_origin);
+    if (options.raw.header_bytes > 0) text << " --header " << options.raw.header_bytes;
+    return text.str();
+}
+
 void print_first_picture(const Input& input, const InputOptions& options) {
     const std::optional<std::string> field = field_to_look_at(*input.mesh, input.report.added_points);
     if (!field) {
@@ -133,12 +153,8 @@ void print_first_picture(const Input& input, const InputOptions& options) {
                                                              : "no field of this file varies over the mesh");
         return;
     }
-    std::string chosen;
-    if (!options.solution.empty()) chosen += " --q " + quoted(options.solution.string());
-    for (const std::string& block : options.blocks) chosen += " --block " + quoted(block);
-    if (options.time && input.time) chosen += " --time " + number(*input.time);
     std::printf("\nA first picture:\n  cellproj render %s%s -o picture.png --field %s\n", quoted(input.name).c_str(),
-                chosen.c_str(), quoted(*field).c_str());
+                how_it_was_read(options).c_str(), quoted(*field).c_str());
 }
 
 void print_info(const InputOptions& options) {
@@ -148,6 +164,7 @@ void print_info(const InputOptions& options) {
     print_points(input);
     std::printf("cells       %s", input.cells.c_str());
     if (input.skipped_cells > 0) std::printf(" (%zu more are no volumes and are skipped)", input.skipped_cells);
+    if (input.ghost_cells > 0) std::printf(" (%zu more are hidden, blanked or copies and left out)", input.ghost_cells);
     std::printf("\n");
     print_tetrahedra(input);
     print_blocks(input);

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -47,6 +48,42 @@ std::vector<double> counted(std::size_t n) {
     return numbers;
 }
 
+const std::map<std::string, NumberType> number_types{
+    {"int8", NumberType::int8},     {"uint8", NumberType::uint8},   {"int16", NumberType::int16},
+    {"uint16", NumberType::uint16}, {"int32", NumberType::int32},   {"uint32", NumberType::uint32},
+    {"float32", NumberType::float32}, {"float64", NumberType::float64}};
+
+void add_raw_options(CLI::App& command, InputOptions& options) {
+    auto* dims = command.add_option("--dims", options.raw_dimensions, "FILE is bare voxels, NX NY NZ of them, x fastest")
+                     ->expected(3)->type_name("NX NY NZ");
+    auto* type = command.add_option("--type", options.raw_type, "Their type")
+                     ->check(CLI::IsMember(number_types))->type_name("TYPE");
+    dims->needs(type);
+    type->needs(dims);
+    command.add_flag("--big-endian", options.raw.big_endian, "Their bytes have the highest first")->needs(dims);
+    command.add_option("--spacing", options.raw_spacing, "Their distances [mesh units]")->needs(dims)->expected(3)
+        ->type_name("DX DY DZ")->check(finite_number())->capture_default_str();
+    command.add_option("--origin", options.raw_origin, "Where the first one lies [mesh units]")->needs(dims)->expected(3)
+        ->type_name("X Y Z")->check(finite_number())->capture_default_str();
+    command.add_option("--header", options.raw.header_bytes, "Bytes in front of them")->needs(dims)->capture_default_str();
+}
+
+ReadOptions read_options(const InputOptions& options) {
+    ReadOptions result;
+    result.solution = options.solution;
+    result.blocks = options.blocks;
+    result.time = options.time;
+    result.subdivide = options.subdivide;
+    if (options.raw_dimensions.empty()) return result;
+    result.raw = options.raw;
+    const auto vector3 = [](const std::vector<double>& v) { return glm::dvec3(v[0], v[1], v[2]); };
+    result.raw->spacing = vector3(options.raw_spacing);
+    result.raw->origin = vector3(options.raw_origin);
+    result.raw->type = number_types.at(options.raw_type);
+    result.raw->dimensions = {options.raw_dimensions[0], options.raw_dimensions[1], options.raw_dimensions[2]};
+    return result;
+}
+
 Input load_sphere_flow() {
     Input input;
     input.name = "demo:sphere";
@@ -72,6 +109,18 @@ void add_input_options(CLI::App& command, InputOptions& options) {
     command.add_option("--block", options.blocks, "Read this block only (again for more); default: all volume blocks")
         ->allow_extra_args(false);
     command.add_option("--time", options.time, "Read the time step nearest to this time; default: the last");
+    command.add_option("--subdivide", options.subdivide,
+                       "Cells of second order and Lagrange cells: 1 cuts them at their nodes, 0 takes their corners only")
+        ->check(CLI::Range(0, 1))->capture_default_str();
+    add_raw_options(command, options);
+}
+
+CLI::Validator finite_number() {
+    return {[](std::string& text) -> std::string {
+                double value = 0;
+                return CLI::detail::lexical_cast(text, value) && std::isfinite(value) ? "" : text + " is no finite number";
+            },
+            "FINITE"};
 }
 
 Input load(const InputOptions& options) {
@@ -86,10 +135,9 @@ Input load(const InputOptions& options) {
     const Stopwatch reading;
     Dataset dataset = [&] {
         Progress progress("reading " + input.name);
-        return read(options.file, {.solution = options.solution,
-                                   .blocks = options.blocks,
-                                   .time = options.time,
-                                   .progress = [&](double fraction) { progress.set(fraction); }});
+        ReadOptions how = read_options(options);
+        how.progress = [&](double fraction) { progress.set(fraction); };
+        return read(options.file, how);
     }();
     input.read_ms = reading.ms();
 
@@ -107,6 +155,7 @@ Input load(const InputOptions& options) {
     input.format = dataset.format;
     input.grid = dataset.grid;
     input.skipped_cells = dataset.skipped_cells;
+    input.ghost_cells = dataset.ghost_cells;
     input.skipped_blocks = dataset.skipped_blocks;
     input.blocks = dataset.blocks;
     input.times = dataset.times;

@@ -11,12 +11,14 @@
 
 #include "classify/transfer_function.hpp"
 #include "mesh/dataset.hpp"
+#include "mesh/raw_volume.hpp"
 #include "mesh/tet_mesh.hpp"
 #include "mesh/tetrahedralize.hpp"
 #include "project/camera.hpp"
 
 namespace CLI {
 class App;
+class Validator;
 }
 
 namespace cellproj::cli {
@@ -27,10 +29,19 @@ struct InputOptions {
     std::vector<std::string> blocks; // --block, empty: all
     std::optional<double> time;      // --time, none: the last
     bool number_cells = false;       // fill Input::file_cells
+    int subdivide = 1;               // --subdivide
+    // Bare voxels: --dims (none: the file is no such one), --type, --big-endian, --spacing, --origin, --header.
+    std::vector<std::size_t> raw_dimensions;
+    std::vector<double> raw_spacing{1, 1, 1}, raw_origin{0, 0, 0};
+    std::string raw_type;
+    RawVolume raw;  // byte order and header
 };
 
-// FILE, --q, --block and --time, into `options`, which must live as long as the command.
+// FILE and how to read it (--q, --block, --time, --subdivide; --dims and what belongs to it), into `options`, which must live as long as the command.
 void add_input_options(CLI::App& command, InputOptions& options);
+
+// Refuses NaN and infinity, which CLI11 takes for numbers.
+CLI::Validator finite_number();
 
 struct Input {
     std::string name;                       // for messages
@@ -39,7 +50,7 @@ struct Input {
     std::string cells;                      // in words: "37479 hexahedra"
     std::string format;                     // in words
     std::optional<GridDimensions> grid;
-    std::size_t skipped_cells = 0, skipped_blocks = 0;
+    std::size_t skipped_cells = 0, ghost_cells = 0, skipped_blocks = 0;
     std::vector<std::string> blocks;        // names of the volume blocks; empty: one dataset
     std::vector<double> times;              // of the file's time steps; empty: none
     std::optional<double> time;             // the one that was read

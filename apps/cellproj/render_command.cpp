@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -24,6 +26,7 @@ struct RenderOptions {
     std::filesystem::path output, camera, transfer, stats;
     std::string field, projection = "perspective", size = "512x512", cell_values = "constant";
     std::vector<double> from{-1, -2, 1}, up{0, 0, 1}, background{1, 1, 1};
+    std::optional<double> nan;
     double orbit_degrees = 0;
     int frames = 1, bits = 8;
     Quality quality;
@@ -159,6 +162,7 @@ void print_median(const std::vector<Statistics>& pictures) {
 // Cell fields are exact as constants; averaged to the points they look smooth.
 ScalarField choose_field(const RenderOptions& options, const Input& input) {
     ScalarField field = select_scalar(*input.mesh, options.field, input.name);
+    if (options.nan) field = with_finite_values(std::move(field), *options.nan);
     const bool averaged = field.location == FieldLocation::cells && options.cell_values == "averaged";
     return averaged ? averaged_to_points(*input.mesh, field) : field;
 }
@@ -238,6 +242,8 @@ void add_render_command(CLI::App& app) {
     command->add_option("--table", options->quality.table_size, "Texels per axis of the pre-integration table")
         ->check(CLI::Range(2, 256))->capture_default_str();
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
+    command->add_option("--nan", options->nan, "Draw values that are not finite (NaN) as this one; default: leave their cells out")
+        ->check(finite_number());
     command->callback([options] { render_pictures(*options); });
 }
 

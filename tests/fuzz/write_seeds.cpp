@@ -3,6 +3,7 @@
 // Writes the small meshes of the tests as seeds: write_seeds FOLDER makes FOLDER/gmsh/…, FOLDER/medit/….
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "tests/support/text_meshes.hpp"
 
@@ -27,5 +28,11 @@ int main(int count, char** arguments) {
     }
     write(folder / "medit" / "sample", medit_file() + '\0' + medit_solutions());
     write(folder / "su2" / "sample", su2_file());
+    // 2 x 2 x 2 points, all at the origin, the last but one a hole: 12 bytes of dimensions, 96 of coordinates, 32 of
+    // IBLANK.
+    const std::string one("\0\0\0\1", 4), two("\0\0\0\2", 4), zero(4, '\0');
+    write(folder / "plot3d" / "binary",
+          two + two + two + std::string(96, '\0') + one + one + one + one + one + one + zero + one);
+    write(folder / "plot3d" / "text", "2\n2 2 2\n2 2 3\n24*0.5 8*1\n36*1d0 11*1 0\n");
     write(folder / "tetgen" / "sample", tetgen_nodes(1) + '\0' + tetgen_elements(1));
 }
