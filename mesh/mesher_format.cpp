@@ -16,7 +16,7 @@ namespace cellproj {
 namespace {
 
 constexpr std::string_view magic = "cpmesher";
-constexpr std::uint32_t version = 2;
+constexpr std::uint32_t version = 3;
 constexpr std::size_t header_size = 8 + 4 + 4 + 8;
 
 enum class Kind : std::uint32_t { request = 1, answer = 2, surface_request = 3, refusal = 4 };
@@ -268,6 +268,14 @@ std::string encode_request(const SurfaceRequest& request) {
     writer.array(request.surface.points);
     writer.array(sizes);
     writer.array(vertices);
+    writer.value(request.wrap);
+    writer.value(static_cast<std::uint64_t>(request.surface.inside));
+    writer.value(std::uint64_t{request.surface.facets.size()});
+    writer.value(std::uint64_t{request.surface.holes.size()});
+    writer.value(std::uint64_t{request.surface.regions.size()});
+    writer.array(request.surface.facets);
+    writer.array(request.surface.holes);
+    writer.array(request.surface.regions);
     return writer.message(Kind::surface_request);
 }
 
@@ -284,6 +292,12 @@ SurfaceRequest decode_surface_request(std::string_view message, const std::strin
     const auto sizes = reader.array<std::uint32_t>(counts[2], "polygon sizes");
     const auto vertices = reader.array<VertexId>(counts[3], "polygon vertices");
     request.surface.polygons = split_facets(sizes, vertices, reader);
+    request.wrap = reader.value<double>("wrap");
+    const auto more = reader.array<std::uint64_t>(4, "counts");
+    request.surface.inside = more[0] == 0 ? Inside::alternating : Inside::enclosed;
+    request.surface.facets = reader.array<std::uint32_t>(more[1], "facets");
+    request.surface.holes = reader.array<glm::dvec3>(more[2], "holes");
+    request.surface.regions = reader.array<Region>(more[3], "regions");
     reader.end();
     return request;
 }
@@ -296,23 +310,27 @@ bool is_refusal(std::string_view message) {
     return is_of(Kind::refusal, message);
 }
 
-std::string encode_refusal(const Error& error) {
+std::string encode_refusal(const Refusal& refusal) {
     Writer writer;
-    writer.text(error.expected());
-    writer.text(error.found());
-    writer.text(error.advice());
+    writer.text(refusal.error.expected());
+    writer.text(refusal.error.found());
+    writer.text(refusal.error.advice());
+    writer.value(std::uint64_t{refusal.intersections.size()});
+    writer.array(refusal.intersections);
     return writer.message(Kind::refusal);
 }
 
-Error decode_refusal(std::string_view message, const std::string& place, const std::string& subject) {
+Refusal decode_refusal(std::string_view message, const std::string& place, const std::string& subject) {
     Reader reader(message, place);
     reader.header(Kind::refusal);
     ErrorParts parts{.kind = ErrorKind::data, .place = subject, .expected = {}, .found = {}, .advice = {}};
     parts.expected = reader.text("expectation");
     parts.found = reader.text("finding");
     parts.advice = reader.text("advice");
+    const auto pairs = reader.value<std::uint64_t>("a count");
+    auto intersections = reader.array<std::array<std::uint32_t, 2>>(pairs, "pairs of facets");
     reader.end();
-    return Error(parts);
+    return {Error(std::move(parts)), std::move(intersections)};
 }
 
 std::string encode_answer(const TetMesh& mesh) {

@@ -7,6 +7,8 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "mesh/scalar_field.hpp"
+#include "mesh/surface_format.hpp"
+#include "surface_input.hpp"
 
 namespace cellproj::cli {
 
@@ -40,6 +42,7 @@ void print_times(const Input& input) {
 }
 
 void print_info(const InputOptions& options) {
+    if (detect_surface_format(options.file)) return print_surface(options.file);
     const Input input = load(options);
     const TetMesh& mesh = *input.mesh;
     const Bounds box = bounds(mesh.points);

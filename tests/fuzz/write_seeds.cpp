@@ -3,7 +3,9 @@
 // Writes the small meshes of the tests as seeds: write_seeds FOLDER makes FOLDER/gmsh/…, FOLDER/medit/….
 #include <filesystem>
 #include <fstream>
+#include <string>
 
+#include "tests/support/surface_files.hpp"
 #include "tests/support/text_meshes.hpp"
 
 namespace {
@@ -26,6 +28,12 @@ int main(int count, char** arguments) {
         }
     }
     write(folder / "medit" / "sample", medit_file() + '\0' + medit_solutions());
+    write(folder / "off" / "sample", off_file());
+    for (const bool binary : {false, true})
+        write(folder / "ply" / (binary ? "binary" : "ascii"), ply_file(binary));
+    write(folder / "poly" / "poly", '\0' + poly_file());
+    write(folder / "poly" / "smesh", '\1' + smesh_file());
+    write(folder / "poly" / "with_nodes", std::string(1, '\0') + "0\n1 0\n1\n3 1 2 3\n0\n" + '\0' + tetgen_nodes(1));
     write(folder / "su2" / "sample", su2_file());
     write(folder / "tetgen" / "sample", tetgen_nodes(1) + '\0' + tetgen_elements(1));
 }
