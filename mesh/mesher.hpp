@@ -53,7 +53,7 @@ inline constexpr std::uint32_t new_facet = 0xffffffffU;
 // first. What is inside, `surface.inside` says; with regions, the result has the cell field "region", in which the parts
 // that no seed marks have numbers above all others. Fields come as `carry_fields` says. Throws Error (data), naming the
 // surface, for one that is flat, open, non-manifold (unless Inside::enclosed) or intersects itself, with counts and the
-// first offenders by facet, and for a region outside or beside another; as above. `report` is set then.
+// first offenders by facet, and for a region outside or beside another; and as above. `report` is set even then.
 //
 // With `options.wrap` in (0, 1], nothing is refused but what has no extent: the result fills the wrap of the surface (CGAL,
 // Portaneri et al., Alpha Wrapping with an Offset, ACM TOG 41(4), 2022), a closed surface that lies outside of it by 1/30
