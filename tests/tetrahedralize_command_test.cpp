@@ -355,6 +355,7 @@ TEST_F(TetrahedralizeCommand, SurfacesAreToldFromMeshesAndRendered) {
     const Outcome info = run_program("info corner.off");
     EXPECT_EQ(info.code, 0) << info.text;
     EXPECT_NE(info.text.find("a surface, OFF"), std::string::npos) << info.text;
+    EXPECT_NE(info.text.find("facets      4\n"), std::string::npos) << info.text;
     EXPECT_NE(info.text.find("cellproj render corner.off --tetrahedralize -o picture.png"), std::string::npos) << info.text;
     const Outcome unfilled = run_program("render corner.off -o corner.png");
     EXPECT_EQ(unfilled.code, 1);

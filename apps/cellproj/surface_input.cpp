@@ -155,7 +155,8 @@ void print_surface(const std::filesystem::path& file) {
     const std::string name = surface.name;
     const auto format = detect_surface_format(file);
     std::printf("%s: a surface, %s\npoints      %zu as stored\nfacets      %zu\n", name.c_str(),
-                format ? cellproj::name(*format) : "", surface.points.size(), surface.polygons.size());
+                format ? cellproj::name(*format) : "", surface.points.size(),
+                facet_of(surface, surface.polygons.size() - 1) + std::size_t{1});
     if (!surface.holes.empty()) std::printf("holes       %zu\n", surface.holes.size());
     if (!surface.regions.empty()) std::printf("regions     %zu\n", surface.regions.size());
     const Bounds box = bounds(surface.points);
