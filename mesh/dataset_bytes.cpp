@@ -87,6 +87,10 @@ void put(ByteWriter& writer, Surface&& surface) {
     writer.text(surface.name);
     put_and_free(writer, surface.points);
     writer.lists(surface.polygons);
+    writer.array(surface.facets);
+    writer.array(surface.holes);
+    writer.array(surface.regions);
+    writer.value(surface.inside);
     put_fields(writer, surface.point_fields);
 }
 
@@ -94,6 +98,10 @@ void take(ByteReader& reader, Surface& surface) {
     surface.name = reader.text("name");
     surface.points = reader.array<glm::dvec3>("points");
     surface.polygons = reader.lists<VertexId>("polygons");
+    surface.facets = reader.array<std::uint32_t>("facets");
+    surface.holes = reader.array<glm::dvec3>("holes");
+    surface.regions = reader.array<Region>("regions");
+    surface.inside = reader.value<Inside>("what is inside");
     surface.point_fields = take_fields(reader);
 }
 

@@ -41,6 +41,7 @@ void validate(const MesherOptions& options) {
     };
     require_bound("max_volume", options.max_volume);
     require_bound("radius_edge_ratio", options.radius_edge_ratio);
+    if (!(options.wrap >= 0.0 && options.wrap <= 1.0)) refuse_option("wrap", "a number from 0 to 1", options.wrap);
     if (!(options.timeout_seconds > 0.0)) refuse_option("timeout_seconds", "a number > 0", options.timeout_seconds);
 }
 
@@ -179,15 +180,25 @@ TetMesh tetrahedralize(const PiecewiseLinearComplex& complex, const MesherOption
     return to_mesh(ask(encode_request(complex, options.max_volume, options.radius_edge_ratio), options));
 }
 
-TetMesh tetrahedralize(const Surface& surface, const MesherOptions& options) {
+TetMesh tetrahedralize(const Surface& surface, const MesherOptions& options, SurfaceReport* report) {
     validate(options);
     validate(surface);
-    const SurfaceRequest request{{surface.name, surface.points, surface.polygons, {}},
-                                 options.fill_holes,
-                                 options.max_volume,
-                                 options.radius_edge_ratio};
+    if (options.fill_holes && surface.inside == Inside::enclosed) {
+        throw Error({.kind = ErrorKind::option,
+                     .place = "mesher option fill_holes",
+                     .expected = "a surface that is a closed boundary but for some holes",
+                     .found = surface.name + ", which may have inner walls",
+                     .advice = "leave out either the filling of open ends or the seeds of holes and regions"});
+    }
+    SurfaceRequest request{surface, options.fill_holes, options.max_volume, options.radius_edge_ratio, options.wrap};
+    request.surface.point_fields.clear();
     const Reply reply = ask(encode_request(request), options);
-    if (is_refusal(reply.bytes)) throw decode_refusal(reply.bytes, reply.place, surface.name);
+    if (is_refusal(reply.bytes)) {
+        Refusal refusal = decode_refusal(reply.bytes, reply.place, surface.name);
+        if (report) report->intersections = std::move(refusal.intersections);
+        throw Error(std::move(refusal.error));
+    }
+    if (report) report->intersections.clear();
     TetMesh mesh = to_mesh(reply);
     carry_fields(surface, mesh);
     return mesh;

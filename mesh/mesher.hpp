@@ -16,13 +16,6 @@
 
 namespace cellproj {
 
-// A region is the part of space around `seed` that facets enclose.
-struct Region {
-    glm::dvec3 seed;
-    double attribute = 0.0;   // becomes the cell field "region"
-    double max_volume = 0.0;  // largest cell in this region [mesh units³]; 0: no bound
-};
-
 // A piecewise-linear complex: planar polygons that meet in common points and edges only.
 struct PiecewiseLinearComplex {
     std::vector<glm::dvec3> points;                  // #P; points that no facet uses become mesh vertices, too
@@ -35,6 +28,7 @@ struct MesherOptions {
     double max_volume = 0.0;              // largest cell anywhere [mesh units³]; 0: no bound
     double radius_edge_ratio = 0.0;       // largest circumradius / shortest edge, e.g. 1.414; 0: no quality refinement
     bool fill_holes = false;              // of a Surface: cap its open ends with triangles
+    double wrap = 0.0;                    // of a Surface: fill a wrap around it instead (see below); 0: the surface itself
     double timeout_seconds = 300.0;       // the process is killed after that
     std::filesystem::path program;        // the mesher; empty: found by `find_mesher`
 };
@@ -48,10 +42,24 @@ std::filesystem::path find_mesher();
 // with garbage, produces no cells, or exceeds its time.
 TetMesh tetrahedralize(const PiecewiseLinearComplex& complex, const MesherOptions& options = {});
 
+struct SurfaceReport {
+    // Pairs of facets (`facet_of`) that cross or touch each other beside their common corners and edges, ascending;
+    // `new_facet` for a triangle that closes a hole.
+    std::vector<std::array<std::uint32_t, 2>> intersections;
+};
+inline constexpr std::uint32_t new_facet = 0xffffffffU;
+
 // Meshes the inside of a surface: coincident points are merged, facets turned to agree, open edges that coincide joined
-// first. A closed sheet within another bounds a cavity. Fields come as `carry_fields` says. Throws Error (data), naming the
-// surface, for one that is flat, open, non-manifold or intersects itself, with counts and the first offenders by facet; and
-// as above.
-TetMesh tetrahedralize(const Surface& surface, const MesherOptions& options = {});
+// first. What is inside, `surface.inside` says; with regions, the result has the cell field "region", in which the parts
+// that no seed marks have numbers above all others. Fields come as `carry_fields` says. Throws Error (data), naming the
+// surface, for one that is flat, open, non-manifold (unless Inside::enclosed) or intersects itself, with counts and the
+// first offenders by facet, and for a region outside or beside another; and as above. `report` is set even then.
+//
+// With `options.wrap` in (0, 1], nothing is refused but what has no extent: the result fills the wrap of the surface (CGAL,
+// Portaneri et al., Alpha Wrapping with an Offset, ACM TOG 41(4), 2022), a closed surface that lies outside of it by 1/30
+// of `wrap` times the diagonal of its box (fields are still those of the surface itself: "distance" is not 0 there). Gaps
+// that a ball of the radius `wrap` × diagonal does not pass are closed; caves behind them and cavities are filled, inner walls
+// are gone. Smaller values follow the surface more closely and cost about the inverse square in time.
+TetMesh tetrahedralize(const Surface& surface, const MesherOptions& options = {}, SurfaceReport* report = nullptr);
 
 }  // namespace cellproj

@@ -165,8 +165,13 @@ std::string encode_request(const SurfaceRequest& request) {
         writer.value(request.max_volume);
         writer.value(request.radius_edge_ratio);
         writer.value(std::uint64_t{request.fill_holes});
+        writer.value(request.wrap);
+        writer.value(static_cast<std::uint64_t>(request.surface.inside));
         writer.array(request.surface.points);
         writer.lists(request.surface.polygons);
+        writer.array(request.surface.facets);
+        writer.array(request.surface.holes);
+        writer.array(request.surface.regions);
     });
 }
 
@@ -177,8 +182,14 @@ SurfaceRequest decode_surface_request(std::string_view message, const std::strin
         request.max_volume = reader.value<double>("largest volume");
         request.radius_edge_ratio = reader.value<double>("radius-edge ratio");
         request.fill_holes = reader.value<std::uint64_t>("choice to fill holes") != 0;
+        request.wrap = reader.value<double>("wrap");
+        request.surface.inside =
+            reader.value<std::uint64_t>("what is inside") == 0 ? Inside::alternating : Inside::enclosed;
         request.surface.points = reader.array<glm::dvec3>("points");
         request.surface.polygons = reader.lists<VertexId>("polygons");
+        request.surface.facets = reader.array<std::uint32_t>("facets");
+        request.surface.holes = reader.array<glm::dvec3>("holes");
+        request.surface.regions = reader.array<Region>("regions");
         return request;
     });
 }
@@ -191,21 +202,23 @@ bool is_refusal(std::string_view message) {
     return is_of(Kind::refusal, message);
 }
 
-std::string encode_refusal(const Error& error) {
+std::string encode_refusal(const Refusal& refusal) {
     return make_message(Kind::refusal, [&](ByteWriter& writer) {
-        writer.text(error.expected());
-        writer.text(error.found());
-        writer.text(error.advice());
+        writer.text(refusal.error.expected());
+        writer.text(refusal.error.found());
+        writer.text(refusal.error.advice());
+        writer.array(refusal.intersections);
     });
 }
 
-Error decode_refusal(std::string_view message, const std::string& place, const std::string& subject) {
+Refusal decode_refusal(std::string_view message, const std::string& place, const std::string& subject) {
     return take_message(message, Kind::refusal, place, [&](ByteReader& reader) {
         ErrorParts parts{.kind = ErrorKind::data, .place = subject, .expected = {}, .found = {}, .advice = {}};
         parts.expected = reader.text("expectation");
         parts.found = reader.text("finding");
         parts.advice = reader.text("advice");
-        return Error(parts);
+        auto intersections = reader.array<std::array<std::uint32_t, 2>>("pairs of facets");
+        return Refusal{Error(parts), std::move(intersections)};
     });
 }
 

@@ -6,22 +6,25 @@
 //   message := header, body
 //   header  := magic "cpmesher" (8 bytes), u32 version = 3, u32 kind (1 request, 2 answer, 3 surface request, 4 refusal),
 //              u64 size of the body
-//   request := f64 max_volume, f64 radius_edge_ratio, points, facets, holes (points), regions (3 f64 seed, f64 attribute,
-//              f64 max_volume each)
+//   request := f64 max_volume, f64 radius_edge_ratio, points, facets, holes (points), regions
 //   answer  := points, tets (4 u32, 0-based, each), region attributes (f64; none or one per tet)
-//   surface request := f64 max_volume, f64 radius_edge_ratio, u64 fill_holes (0 or 1), points, polygons
-//   refusal := what was expected, what was found, what to do: UTF-8 texts. The answer to a surface that cannot be made a
-//              closed boundary.
-//   points: 3 f64 each. Facets and polygons: the sizes of all (u32), then the vertices of all (u32, 0-based). Every array
-//   and text stands behind its length, u64 (byte_stream.hpp).
+//   surface request := f64 max_volume, f64 radius_edge_ratio, u64 fill_holes (0 or 1), f64 wrap, u64 inside (0 alternating,
+//              1 enclosed), points, polygons, the facet of each polygon (u32; none or one per polygon), holes (points), regions
+//   refusal := what was expected, what was found, what to do: UTF-8 texts; pairs of facets (2 u32). The answer to a surface
+//              that cannot be made a closed boundary.
+//   points: 3 f64 each. regions: 3 f64 seed, f64 attribute, f64 max_volume each. Facets and polygons: the sizes of all
+//   (u32), then the vertices of all (u32, 0-based). Every array and text stands behind its length, u64 (byte_stream.hpp).
 //
 // Numbers stand in the byte order of the machine, on which both programs run. Nothing follows the body.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mesh/error.hpp"
 #include "mesh/mesher.hpp"
@@ -37,10 +40,17 @@ struct MeshingRequest {
 };
 
 struct SurfaceRequest {
-    Surface surface;                 // points and polygons only
+    Surface surface;                 // all but its fields
     bool fill_holes = false;
     double max_volume = 0.0;         // as above
     double radius_edge_ratio = 0.0;
+    double wrap = 0.0;               // as in MesherOptions
+};
+
+// Why a surface was not filled.
+struct Refusal {
+    Error error;
+    std::vector<std::array<std::uint32_t, 2>> intersections;  // as in SurfaceReport
 };
 
 // Throws Error (data), naming `place`: fewer than 4 points or more than the mesher can count, a point, hole or region
@@ -52,7 +62,7 @@ std::string encode_request(const PiecewiseLinearComplex& complex, double max_vol
 std::string encode_answer(const TetMesh& mesh);
 
 std::string encode_request(const SurfaceRequest& request);
-std::string encode_refusal(const Error& error);
+std::string encode_refusal(const Refusal& refusal);
 
 // Whether a message says it is a surface request, a refusal; nothing else of it is checked.
 bool is_surface_request(std::string_view message);
@@ -63,8 +73,8 @@ bool is_refusal(std::string_view message);
 MeshingRequest decode_request(std::string_view message, const std::string& place);
 SurfaceRequest decode_surface_request(std::string_view message, const std::string& place);
 TetMesh decode_answer(std::string_view message, const std::string& place);
-// As an Error (data) about `subject`.
-Error decode_refusal(std::string_view message, const std::string& place, const std::string& subject);
+// Its Error is one (data) about `subject`.
+Refusal decode_refusal(std::string_view message, const std::string& place, const std::string& subject);
 
 // The size of the answer that starts with these bytes: empty while its header is incomplete, 0 when they cannot become
 // an answer.

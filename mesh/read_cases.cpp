@@ -173,7 +173,7 @@ Dataset read_ensight(const fs::path& file, const ReadOptions& options) {
     const TimeSteps steps = choose_time(*reader, file, options.time);
     update(*reader, file);
     require_all_variables(*reader, file);
-    Dataset dataset = blocks_to_dataset(*reader->GetOutputDataObject(0), file, "EnSight Gold", options.blocks);
+    Dataset dataset = blocks_to_dataset(*reader->GetOutputDataObject(0), file, "EnSight Gold", options);
     dataset.times = steps.all;
     dataset.time = steps.read;
     return dataset;

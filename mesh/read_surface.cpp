@@ -9,17 +9,15 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
-#include <cstring>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "mesh/error.hpp"
 #include "mesh/file_bytes.hpp"
 #include "mesh/isolated_read.hpp"
 #include "mesh/surface.hpp"
+#include "mesh/surface_format.hpp"
 #include "mesh/vtk_conversion.hpp"
 
 namespace cellproj {
@@ -29,58 +27,19 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t head_size = 4096;
-constexpr std::uint64_t stl_header = 84, stl_facet = 50;  // bytes of a binary STL
 
-enum class Format { stl_ascii, stl_binary, off, ply, obj, vtp };
-
-std::string lower_suffix(const fs::path& file) {
-    std::string suffix = file.extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-    return suffix;
-}
-
-// The first line that is neither empty nor a comment.
-std::string_view first_line(std::string_view head) {
-    while (!head.empty()) {
-        std::string_view line = head.substr(0, head.find('\n'));
-        head.remove_prefix(std::min(line.size() + 1, head.size()));
-        line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
-        if (!line.empty() && line.front() != '#') return line;
-    }
-    return {};
-}
-
-std::uint64_t announced_stl_size(std::string_view head) {
-    std::uint32_t facets = 0;
-    if (head.size() < stl_header) return 0;
-    std::memcpy(&facets, head.data() + stl_header - sizeof(facets), sizeof(facets));
-    return stl_header + stl_facet * facets;
-}
-
-Format format_of(const fs::path& file) {
-    const std::string head = read_bytes(file, 0, head_size);
-    const std::string_view line = first_line(head);
-    const std::string_view word = line.substr(0, line.find_first_of(" \t\r"));
-    // Many programs begin the free text of a binary STL with "solid", too: the size tells.
-    if (announced_stl_size(head) == fs::file_size(file)) return Format::stl_binary;
-    if (head.starts_with("ply")) return Format::ply;
-    if (head.find("<VTKFile") != std::string::npos) return Format::vtp;
-    if (word.ends_with("OFF")) return Format::off;
-    if (word == "solid") return Format::stl_ascii;
-    const std::string suffix = lower_suffix(file);
-    if (suffix == ".stl") return Format::stl_binary;
-    if (suffix == ".obj") return Format::obj;
-    if (suffix == ".off") return Format::off;
+SurfaceFormat require_format(const fs::path& file) {
+    if (const auto format = detect_surface_format(file)) return *format;
     throw Error({.kind = ErrorKind::format,
                  .place = file.string(),
-                 .expected = "a surface: STL, OFF, PLY, OBJ or VTP",
-                 .found = "a file that starts with \"" + printable(head.substr(0, 16)) + "\"",
+                 .expected = "a surface: STL, OFF, PLY, OBJ, VTP, or TetGen's .poly or .smesh",
+                 .found = "a file that starts with \"" + printable(read_bytes(file, 0, 16)) + "\"",
                  .advice = "convert it; volume meshes need no tetrahedralize: render them directly"});
 }
 
 void require_whole_stl(const fs::path& file) {
     const std::uint64_t size = fs::file_size(file);
-    const std::uint64_t announced = announced_stl_size(read_bytes(file, 0, stl_header));
+    const std::uint64_t announced = announced_stl_size(read_bytes(file, 0, head_size));
     if (size == announced) return;
     throw Error({.kind = ErrorKind::format,
                  .place = file.string(),
@@ -156,24 +115,39 @@ Surface read_vtp(const fs::path& file) {
     return surface;
 }
 
-Surface read_with_vtk(Format format, const fs::path& file) {
-    use_one_thread();
-    if (format == Format::vtp) return read_vtp(file);
-    if (format != Format::obj) return read_stl(file);
-    vtkNew<vtkOBJReader> reader;
-    return read_with(*reader, file);
-}
-
 }  // namespace
 
 Surface read_surface(const fs::path& file) {
     require_readable(file);
-    const Format format = format_of(file);
-    if (format == Format::off) return read_off(file);
-    if (format == Format::ply) return read_ply(file);
-    if (format == Format::stl_ascii) require_stl_end(file);
-    if (format == Format::stl_binary) require_whole_stl(file);
-    return read_isolated(file, fs::file_size(file), {}, [&] { return read_with_vtk(format, file); });
+    const auto isolated = [&](const auto& work) {
+        return read_isolated(file, fs::file_size(file), {}, [&] {
+            use_one_thread();
+            return work();
+        });
+    };
+    switch (require_format(file)) {
+        case SurfaceFormat::stl_ascii:
+            require_stl_end(file);
+            return isolated([&] { return read_stl(file); });
+        case SurfaceFormat::stl_binary:
+            require_whole_stl(file);
+            return isolated([&] { return read_stl(file); });
+        case SurfaceFormat::off:
+            return read_off(file);
+        case SurfaceFormat::ply:
+            return read_ply(file);
+        case SurfaceFormat::poly:
+        case SurfaceFormat::smesh:
+            return read_poly(file);
+        case SurfaceFormat::obj:
+            return isolated([&] {
+                vtkNew<vtkOBJReader> reader;
+                return read_with(*reader, file);
+            });
+        case SurfaceFormat::vtp:
+            break;
+    }
+    return isolated([&] { return read_vtp(file); });
 }
 
 }  // namespace cellproj

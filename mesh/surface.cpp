@@ -7,6 +7,22 @@
 
 namespace cellproj {
 
+namespace {
+
+bool finite(const glm::dvec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+bool finite(const Region& region) {
+    return finite(region.seed) && std::isfinite(region.attribute) && std::isfinite(region.max_volume);
+}
+
+}  // namespace
+
+std::uint32_t facet_of(const Surface& surface, std::size_t polygon) {
+    return surface.facets.empty() ? static_cast<std::uint32_t>(polygon) : surface.facets[polygon];
+}
+
 void validate(const Surface& surface) {
     const auto refuse = [&](const std::string& expected, const std::string& found, const std::string& advice) {
         throw Error(
@@ -20,12 +36,15 @@ void validate(const Surface& surface) {
         refuse("4 to " + std::to_string(most) + " points", std::to_string(count), "give a closed surface");
     }
     for (std::size_t i = 0; i < count; ++i) {
-        const glm::dvec3& p = surface.points[i];
-        if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) continue;
+        if (finite(surface.points[i])) continue;
         refuse("finite coordinates", "point " + std::to_string(i) + " is not finite", "repair or remove it");
     }
+    if (!surface.facets.empty() && surface.facets.size() != surface.polygons.size()) {
+        refuse("a facet for each of " + std::to_string(surface.polygons.size()) + " polygons",
+               std::to_string(surface.facets.size()), "give one for each, or none");
+    }
     for (std::size_t f = 0; f < surface.polygons.size(); ++f) {
-        const std::string which = "facet " + std::to_string(f);
+        const std::string which = "facet " + std::to_string(facet_of(surface, f));
         if (surface.polygons[f].size() < 3) {
             refuse("facets of at least 3 vertices", which + " with " + std::to_string(surface.polygons[f].size()),
                    "remove it");
@@ -42,6 +61,15 @@ void validate(const Surface& surface) {
         refuse("a value of every field at every point",
                "\"" + field.name + "\" with " + std::to_string(field.values.size()) + " numbers",
                "write the file again");
+    }
+    if (surface.inside == Inside::alternating && !(surface.holes.empty() && surface.regions.empty())) {
+        refuse("holes and regions of an enclosed inside", "an alternating one", "leave them out, or choose Inside::enclosed");
+    }
+    for (std::size_t i = 0; i < surface.holes.size(); ++i) {
+        if (!finite(surface.holes[i])) refuse("finite numbers", "hole " + std::to_string(i) + " without", "correct them");
+    }
+    for (std::size_t i = 0; i < surface.regions.size(); ++i) {
+        if (!finite(surface.regions[i])) refuse("finite numbers", "region " + std::to_string(i) + " without", "correct them");
     }
 }
 

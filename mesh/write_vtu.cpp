@@ -9,7 +9,9 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
@@ -40,22 +42,41 @@ void add_fields(vtkDataSetAttributes& attributes, const std::vector<Field>& fiel
     if (!fields.empty() && fields.front().components == 1) attributes.SetActiveScalars(fields.front().name.c_str());
 }
 
-vtkNew<vtkUnstructuredGrid> to_grid(const TetMesh& mesh) {
+vtkNew<vtkPoints> to_vtk(const std::vector<glm::dvec3>& positions) {
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
-    points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
-    for (std::size_t i = 0; i < mesh.points.size(); ++i)
-        points->SetPoint(static_cast<vtkIdType>(i), &mesh.points[i].x);
+    points->SetNumberOfPoints(static_cast<vtkIdType>(positions.size()));
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        points->SetPoint(static_cast<vtkIdType>(i), &positions[i].x);
+    return points;
+}
+
+vtkNew<vtkUnstructuredGrid> to_vtk(const TetMesh& mesh) {
     vtkNew<vtkCellArray> cells;
     cells->AllocateExact(static_cast<vtkIdType>(mesh.tets.size()), static_cast<vtkIdType>(4 * mesh.tets.size()));
     for (const auto& tet : mesh.tets)
         cells->InsertNextCell({vtkIdType{tet[0]}, vtkIdType{tet[1]}, vtkIdType{tet[2]}, vtkIdType{tet[3]}});
     vtkNew<vtkUnstructuredGrid> grid;
-    grid->SetPoints(points);
+    grid->SetPoints(to_vtk(mesh.points));
     grid->SetCells(VTK_TETRA, cells);
     add_fields(*grid->GetPointData(), mesh.point_fields);
     add_fields(*grid->GetCellData(), mesh.cell_fields);
     return grid;
+}
+
+vtkNew<vtkPolyData> to_vtk(const Surface& surface, const std::vector<Field>& polygon_fields) {
+    vtkNew<vtkCellArray> polygons;
+    for (const std::vector<VertexId>& polygon : surface.polygons) {
+        polygons->InsertNextCell(static_cast<int>(polygon.size()));
+        for (const VertexId v : polygon)
+            polygons->InsertCellPoint(vtkIdType{v});
+    }
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(to_vtk(surface.points));
+    data->SetPolys(polygons);
+    add_fields(*data->GetPointData(), surface.point_fields);
+    add_fields(*data->GetCellData(), polygon_fields);
+    return data;
 }
 
 [[noreturn]] void fail(const fs::path& file, const std::string& found) {
@@ -84,20 +105,18 @@ private:
     fs::path path_;
 };
 
-}  // namespace
+// Through memory: VTK tells what goes wrong with a file to the terminal, not to its caller.
+std::string bytes_of(vtkXMLWriter& writer, vtkDataObject& data, const fs::path& file) {
+    writer.SetInputDataObject(&data);
+    writer.SetDataModeToAppended();
+    writer.EncodeAppendedDataOff();
+    writer.SetCompressorTypeToZLib();
+    writer.WriteToOutputStringOn();
+    if (writer.Write() != 1) fail(file, "that VTK could not write the data");
+    return writer.GetOutputString();
+}
 
-void write_vtu(const TetMesh& mesh, const fs::path& file) {
-    const vtkNew<vtkUnstructuredGrid> grid = to_grid(mesh);
-    // Through memory: VTK tells what goes wrong with a file to the terminal, not to its caller.
-    vtkNew<vtkXMLUnstructuredGridWriter> writer;
-    writer->SetInputData(grid);
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOff();
-    writer->SetCompressorTypeToZLib();
-    writer->WriteToOutputStringOn();
-    if (writer->Write() != 1) fail(file, "that VTK could not write the grid");
-    const std::string bytes = writer->GetOutputString();
-
+void write_whole(const std::string& bytes, const fs::path& file) {
     const TemporaryFile temporary(file);
     errno = 0;
     std::ofstream stream(temporary.path(), std::ios::binary);
@@ -107,6 +126,18 @@ void write_vtu(const TetMesh& mesh, const fs::path& file) {
     std::error_code error;
     fs::rename(temporary.path(), file, error);
     if (error) fail(file, error.message());
+}
+
+}  // namespace
+
+void write_vtu(const TetMesh& mesh, const fs::path& file) {
+    const vtkNew<vtkXMLUnstructuredGridWriter> writer;
+    write_whole(bytes_of(*writer, *to_vtk(mesh), file), file);
+}
+
+void write_vtp(const Surface& surface, const std::vector<Field>& polygon_fields, const fs::path& file) {
+    const vtkNew<vtkXMLPolyDataWriter> writer;
+    write_whole(bytes_of(*writer, *to_vtk(surface, polygon_fields), file), file);
 }
 
 }  // namespace cellproj

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
+#include "mesh/surface.hpp"
 #include "mesh/tet_mesh.hpp"
 
 namespace cellproj {
@@ -13,5 +15,9 @@ namespace cellproj {
 // renamed when it is whole: `file` is never half written. Throws Error (file) when that cannot be done, Error
 // (environment) where cellproj was built without VTK.
 void write_vtu(const TetMesh& mesh, const std::filesystem::path& file);
+
+// The same for the polygons of a surface, with its point fields and with fields of one row per polygon: VTK XML polygonal
+// data.
+void write_vtp(const Surface& surface, const std::vector<Field>& polygon_fields, const std::filesystem::path& file);
 
 }  // namespace cellproj

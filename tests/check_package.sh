@@ -58,4 +58,28 @@ grep -q "^cellproj_DIR:PATH=$prefix/" "$scratch/installed/CMakeCache.txt" || fai
 echo "check_package: a consumer of the source tree, without VTK and mesher"
 consumer subdirectory -DCMAKE_BUILD_TYPE=Debug -DCELLPROJ_TREE="$source" -DCELLPROJ_WITH_VTK=OFF -DCELLPROJ_WITH_MESHER=OFF
 ! [ -e "$scratch/subdirectory/cellproj/tests" ] || fail "tests are configured inside another project"
+
+# says KIND FILE WORDS: what `files` says about a file holds these words.
+says() {
+    local said
+    said=$("$scratch/subdirectory/files" "$1" "$scratch/$2") || true
+    [[ $said == *"$3"* ]] || fail "expected \"$3\" about $2, found \"$said\""
+}
+
+echo "check_package: files without VTK: our own readers read, the others say how to get them"
+quietly cmake --build "$scratch/subdirectory" --target files
+corner=$'0 0 0\n1 0 0\n0 1 0\n0 0 1'
+printf 'OFF\n4 4 0\n%s\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n' "$corner" >"$scratch/corner.off"
+printf '4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 0\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n0\n' >"$scratch/corner.smesh"
+printf 'MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra 1\n1 2 3 4 0\nEnd\n' \
+    >"$scratch/corner.mesh"
+printf '<VTKFile type="UnstructuredGrid">\n' >"$scratch/corner.vtu"
+printf '<VTKFile type="PolyData">\n' >"$scratch/corner.vtp"
+printf 'solid corner\nendsolid corner\n' >"$scratch/corner.stl"
+says surface corner.off "4 points"
+says surface corner.smesh "4 points"
+says mesh corner.mesh "4 points"
+says mesh corner.vtu "build with -DCELLPROJ_WITH_VTK=ON"
+says surface corner.vtp "build with -DCELLPROJ_WITH_VTK=ON"
+says surface corner.stl "build with -DCELLPROJ_WITH_VTK=ON"
 echo "check_package: good"

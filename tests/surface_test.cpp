@@ -254,7 +254,7 @@ TEST_F(SurfaceFile, CutFilesDoNoHarm) {
 }
 
 TEST_F(SurfaceFile, OtherFilesAreRefused) {
-    expect_refused("a.txt", "hello\n", "STL, OFF, PLY, OBJ or VTP");
+    expect_refused("a.txt", "hello\n", "a surface: STL, OFF, PLY, OBJ, VTP, or TetGen's .poly or .smesh");
     expect_refused("a.obj", "hello\n", "no polygons");
     EXPECT_EQ(error_of([&] { read_surface(folder_ / "none.stl"); }).kind(), ErrorKind::file);
 }

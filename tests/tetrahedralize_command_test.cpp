@@ -3,10 +3,13 @@
 // From surfaces, clean and dirty, to volumes: by the library, and by the program as a user meets it.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
@@ -189,20 +192,34 @@ TEST(SurfaceMeshing, BrokenMesherIsAnError) {
 }
 
 TEST(SurfaceMeshing, MessagesSurviveTheExchange) {
-    SurfaceRequest request{cube(), true, 0.5, 1.5};
+    SurfaceRequest request{cube(), true, 0.5, 1.5, 0.02};
+    request.surface.facets = {0, 0, 1, 2, 3, 4};
+    request.surface.inside = Inside::enclosed;
+    request.surface.holes = {{1, 2, 3}};
+    request.surface.regions = {{{4, 5, 6}, 7, 8}};
     const SurfaceRequest back = decode_surface_request(encode_request(request), "test");
     EXPECT_EQ(back.surface.points, request.surface.points);
     EXPECT_EQ(back.surface.polygons, request.surface.polygons);
     EXPECT_TRUE(back.fill_holes);
     EXPECT_EQ(back.max_volume, 0.5);
     EXPECT_EQ(back.radius_edge_ratio, 1.5);
+    EXPECT_EQ(back.wrap, 0.02);
+    EXPECT_EQ(back.surface.facets, request.surface.facets);
+    EXPECT_EQ(back.surface.inside, Inside::enclosed);
+    EXPECT_EQ(back.surface.holes, request.surface.holes);
+    ASSERT_EQ(back.surface.regions.size(), 1U);
+    EXPECT_EQ(back.surface.regions[0].seed, glm::dvec3(4, 5, 6));
+    EXPECT_EQ(back.surface.regions[0].attribute, 7);
+    EXPECT_EQ(back.surface.regions[0].max_volume, 8);
 
     const Error error({.kind = ErrorKind::data, .place = "there", .expected = "a", .found = "b…", .advice = ""});
-    const std::string refusal = encode_refusal(error);
+    const std::string refusal = encode_refusal({error, {{2, 7}, {3, new_facet}}});
     EXPECT_TRUE(is_refusal(refusal));
     EXPECT_FALSE(is_refusal(encode_request(request)));
-    EXPECT_EQ(decode_refusal(refusal, "test", "here").found(), "b…");
-    EXPECT_EQ(decode_refusal(refusal, "test", "here").place(), "here");
+    EXPECT_EQ(decode_refusal(refusal, "test", "here").error.found(), "b…");
+    EXPECT_EQ(decode_refusal(refusal, "test", "here").error.place(), "here");
+    EXPECT_EQ(decode_refusal(refusal, "test", "here").intersections,
+              (std::vector<std::array<std::uint32_t, 2>>{{2, 7}, {3, new_facet}}));
     EXPECT_EQ(error_of([&] { decode_refusal(refusal.substr(0, refusal.size() - 1), "test", "here"); }).kind(),
               ErrorKind::mesher);
 }
@@ -226,9 +243,10 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    Outcome run(const std::string& arguments) const {
-        const std::string command =
-            "cd '" + folder_.string() + "' && '" + CELLPROJ_PROGRAM + "' tetrahedralize " + arguments + " 2>&1";
+    Outcome run(const std::string& arguments) const { return run_program("tetrahedralize " + arguments); }
+
+    Outcome run_program(const std::string& arguments) const {
+        const std::string command = "cd '" + folder_.string() + "' && '" + CELLPROJ_PROGRAM + "' " + arguments + " 2>&1";
         Outcome outcome;
         FILE* pipe = popen(command.c_str(), "r");
         std::array<char, 4096> buffer{};
@@ -276,12 +294,89 @@ TEST_F(TetrahedralizeCommand, WritesAMeshThatVtkReads) {
     EXPECT_EQ(grid.GetPointData()->GetArray("distance")->GetNumberOfTuples(), grid.GetNumberOfPoints());
 }
 
+std::string off_of(const Surface& surface) {
+    std::string text = "OFF\n" + std::to_string(surface.points.size()) + " " + std::to_string(surface.polygons.size()) + " 0\n";
+    for (const glm::dvec3& p : surface.points)
+        text += std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + "\n";
+    for (const auto& polygon : surface.polygons) {
+        text += std::to_string(polygon.size());
+        for (const VertexId v : polygon)
+            text += " " + std::to_string(v);
+        text += "\n";
+    }
+    return text;
+}
+
+TEST_F(TetrahedralizeCommand, HolesAndRegionsAreOptions) {
+    std::ofstream(folder_ / "nested.off") << off_of(
+        boxes({{glm::dvec3(0.0), glm::dvec3(1.0)}, {glm::dvec3(0.25), glm::dvec3(0.75)}, {glm::dvec3(2.0), glm::dvec3(3.0)}}));
+    const std::string places = "nested.off -o mesh.vtu --region 0.1,0.1,0.1 --region .5,.5,.5:-7:0.001 ";
+    const Outcome regions = run(places + "--region 2.5,2.5,2.5:7");
+    ASSERT_EQ(regions.code, 0) << regions.text;
+    for (const char* words : {" tetrahedra, volume 2\n", "region 1: ", "volume 0.875\n", "region -7: ", "volume 0.125\n", "region 7: "})
+        EXPECT_NE(regions.text.find(words), std::string::npos) << words << "\n" << regions.text;
+    const Outcome hole = run(places + "--hole 2.5,2.5,2.5");
+    EXPECT_NE(hole.text.find(" tetrahedra, volume 1\n"), std::string::npos) << hole.text;
+    // A region in a void is a mistake.
+    expect_refusal(places + "--hole .5,.5,.5", "region 1 (attribute -7) at 0.5, 0.5, 0.5, which is outside or in a hole");
+    expect_refusal("nested.off -o x.vtu --hole 1,2", "a point X,Y,Z, found \"1,2\"");
+    expect_refusal("nested.off -o x.vtu --region 1,2,3:a", "X,Y,Z:ATTRIBUTE:MAXVOLUME, found \"1,2,3:a\"");
+    expect_refusal("nested.off -o x.vtu --region 1,2,3:4:-1", "MAXVOLUME");
+    expect_refusal("nested.off -o x.vtu --hole .5,.5,.5 --fill-holes", "fill_holes");
+}
+
+TEST_F(TetrahedralizeCommand, CrossingFacetsAreShown) {
+    std::ofstream(folder_ / "crossing.off") << off_of(
+        boxes({{glm::dvec3(0.0), glm::dvec3(1.0)}, {glm::dvec3(0.5), glm::dvec3(1.5)}}));
+    expect_refusal("crossing.off -o mesh.vtu", "(--intersections FILE.vtp shows where; facets count from 0)");
+    expect_refusal("crossing.off -o mesh.vtu --intersections x.stl", "a name that ends in .vtp");
+    const Outcome outcome = run("crossing.off -o mesh.vtu --intersections x.vtp");
+    EXPECT_EQ(outcome.code, 1) << outcome.text;
+    EXPECT_NE(outcome.text.find("x.vtp: 6 facets that cross or touch others"), std::string::npos) << outcome.text;
+    EXPECT_FALSE(fs::exists(folder_ / "mesh.vtu"));
+    vtkNew<vtkXMLPolyDataReader> reader;
+    reader->SetFileName((folder_ / "x.vtp").c_str());
+    reader->Update();
+    vtkCellData& data = *reader->GetOutput()->GetCellData();
+    ASSERT_EQ(reader->GetOutput()->GetNumberOfPolys(), 6);
+    ASSERT_NE(data.GetArray("facet"), nullptr);
+    const std::array<int, 6> facets{1, 3, 5, 6, 8, 10};
+    for (vtkIdType i = 0; i < 6; ++i) {
+        EXPECT_EQ(data.GetArray("facet")->GetTuple1(i), facets[static_cast<std::size_t>(i)]);
+        EXPECT_EQ(data.GetArray("crossed")->GetTuple1(i), 2);
+    }
+    const Outcome clean = run("corner.off -o mesh.vtu --intersections y.vtp");
+    EXPECT_EQ(clean.code, 0);
+    EXPECT_NE(clean.text.find("no facets cross or touch: y.vtp is not written"), std::string::npos) << clean.text;
+    EXPECT_FALSE(fs::exists(folder_ / "y.vtp"));
+}
+
+TEST_F(TetrahedralizeCommand, SurfacesAreToldFromMeshesAndRendered) {
+    const Outcome info = run_program("info corner.off");
+    EXPECT_EQ(info.code, 0) << info.text;
+    EXPECT_NE(info.text.find("a surface, OFF"), std::string::npos) << info.text;
+    EXPECT_NE(info.text.find("facets      4\n"), std::string::npos) << info.text;
+    EXPECT_NE(info.text.find("cellproj render corner.off --tetrahedralize -o picture.png"), std::string::npos) << info.text;
+    const Outcome unfilled = run_program("render corner.off -o corner.png");
+    EXPECT_EQ(unfilled.code, 1);
+    EXPECT_NE(unfilled.text.find("found a surface (OFF); fill it: cellproj render corner.off --tetrahedralize"), std::string::npos)
+        << unfilled.text;
+    EXPECT_EQ(run_program("render corner.off -o corner.png --wrap 0.1").code, 2);
+    const Outcome filled = run_program("render corner.off --tetrahedralize -o corner.png --size 64x64");
+    EXPECT_EQ(filled.code, 0) << filled.text;
+    EXPECT_TRUE(fs::exists(folder_ / "corner.png"));
+    EXPECT_EQ(filled.text.find("blank"), std::string::npos) << filled.text;  // the default bound leaves points inside
+    const Outcome mesh = run_program("render corner.png --tetrahedralize -o x.png");
+    EXPECT_NE(mesh.text.find("expected a surface"), std::string::npos) << mesh.text;
+}
+
 TEST_F(TetrahedralizeCommand, BadOptionsAreRefused) {
     expect_refusal("corner.off -o corner.stl", "a name that ends in .vtu");
     expect_refusal("corner.off -o missing/corner.vtu", "No such file or directory");
     expect_refusal("missing.off -o corner.vtu", "check the path");
     expect_refusal("corner.off -o corner.vtu --max-volume -1", "max_volume");
     expect_refusal("corner.off -o corner.vtu --timeout 0", "timeout_seconds");
+    expect_refusal("corner.off -o corner.vtu --wrap 2", "wrap");
     EXPECT_EQ(run("corner.off").code, 2);
 }
 

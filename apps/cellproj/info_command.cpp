@@ -17,6 +17,8 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "mesh/scalar_field.hpp"
+#include "mesh/surface_format.hpp"
+#include "surface_input.hpp"
 
 namespace cellproj::cli {
 
@@ -158,6 +160,7 @@ void print_first_picture(const Input& input, const InputOptions& options) {
 }
 
 void print_info(const InputOptions& options) {
+    if (detect_surface_format(options.file)) return print_surface(options.file);
     const Input input = load(options);
     const TetMesh& mesh = *input.mesh;
     std::printf("%s: %s\n", input.name.c_str(), input.format.c_str());

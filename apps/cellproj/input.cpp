@@ -13,6 +13,7 @@
 #include "mesh/read.hpp"
 #include "progress.hpp"
 #include "render/statistics.hpp"
+#include "surface_input.hpp"
 
 namespace cellproj::cli {
 
@@ -130,6 +131,7 @@ Input load(const InputOptions& options) {
         throw Error({ErrorKind::option, "input", "demo:sphere, the only embedded scene", options.file,
                      "or give a file"});
     }
+    require_no_surface(options.file);
     Input input;
     input.name = options.file;
     const Stopwatch reading;

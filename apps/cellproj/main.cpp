@@ -19,6 +19,7 @@ constexpr const char* description =
     "  cellproj render flow.vtu -o flow.png --field p --transfer tf.json --size 1024x768\n"
     "  cellproj render grid.xyz --q solution.q -o mach.png --field Mach --from -1,-2,1\n"
     "  cellproj tetrahedralize part.stl -o part.vtu\n"
+    "  cellproj render part.stl --tetrahedralize -o part.png\n"
     "  cellproj render demo:sphere -o orbit.png --orbit 360 --frames 24 --stats stats.json\n";
 
 }  // namespace

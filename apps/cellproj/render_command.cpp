@@ -16,6 +16,7 @@
 #include "progress.hpp"
 #include "render/output_file.hpp"
 #include "render/renderer.hpp"
+#include "surface_input.hpp"
 
 namespace cellproj::cli {
 
@@ -23,6 +24,8 @@ namespace {
 
 struct RenderOptions {
     InputOptions input;
+    bool tetrahedralize = false;
+    SurfaceOptions surface;
     std::filesystem::path output, camera, transfer, stats;
     std::string field, projection = "perspective", size = "512x512", cell_values = "constant";
     std::vector<double> from{-1, -2, 1}, up{0, 0, 1}, background{1, 1, 1};
@@ -173,7 +176,7 @@ void render_pictures(const RenderOptions& options) {
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
-    const Input input = load(options.input);
+    const Input input = options.tetrahedralize ? load_filled(options.input.file, options.surface) : load(options.input);
     const auto field = std::make_shared<const ScalarField>(choose_field(options, input));
     warn_of_values(*field);
     const Scene scene{input.mesh, field, choose_transfer(options, input, *field)};
@@ -244,6 +247,10 @@ void add_render_command(CLI::App& app) {
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
     command->add_option("--nan", options->nan, "Draw values that are not finite (NaN) as this one; default: leave their cells out")
         ->check(finite_number());
+    CLI::Option* tetrahedralize = command->add_flag(
+        "--tetrahedralize", options->tetrahedralize, "FILE is a surface: fill it with tetrahedra first, and render the inside");
+    for (CLI::Option* option : add_surface_options(*command, options->surface, "a regular cell with edges of 1/40 of the diagonal"))
+        option->needs(tetrahedralize);
     command->callback([options] { render_pictures(*options); });
 }
 

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -17,6 +18,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 #ifdef __linux__
 #include <sys/prctl.h>
@@ -28,6 +30,8 @@
 #include "mesh/error.hpp"
 #include "mesh/mesher_format.hpp"
 #include "repair.hpp"
+#include "seeds.hpp"
+#include "wrap.hpp"
 
 namespace {
 
@@ -206,20 +210,40 @@ void require_bound(const char* name, double bound) {
         throw std::invalid_argument(std::string(name) + " must be finite and ≥ 0");
 }
 
+PiecewiseLinearComplex boundary_of(const SurfaceRequest& request, std::vector<std::array<std::uint32_t, 2>>& intersections) {
+    const Surface& surface = request.surface;
+    if (request.wrap > 0.0) return wrapped(surface, request.wrap);
+    if (surface.inside == Inside::enclosed) return enclosing_facets(surface, intersections);
+    return closed_boundary(surface, request.fill_holes, intersections);
+}
+
 // A crash while the surface is repaired ends as TetGen's do; only what is wrong with the surface is an answer.
 std::string answer_surface(const std::string& message, const std::string& place) {
     const SurfaceRequest request = decode_surface_request(message, place);
     require_bound("max_volume", request.max_volume);
     require_bound("radius_edge_ratio", request.radius_edge_ratio);
+    require_bound("wrap", request.wrap);
     MeshingRequest meshing{{}, request.max_volume, request.radius_edge_ratio};
+    std::vector<std::array<std::uint32_t, 2>> intersections;
     try {
         validate(request.surface);
-        meshing.complex = closed_boundary(request.surface, request.fill_holes);
+        meshing.complex = boundary_of(request, intersections);
     } catch (const Error& error) {
-        return encode_refusal(error);
+        return encode_refusal({error, std::move(intersections)});
     }
-    TetMesh mesh = mesh_with_tetgen(meshing, true);
-    keep_inside(mesh, meshing.complex);
+    meshing.complex.holes = request.surface.holes;
+    if (!request.surface.regions.empty()) {
+        const TetMesh parts = mesh_with_tetgen({meshing.complex, 0.0, 0.0}, true);
+        try {
+            require_seeds(parts, request.surface.regions, request.surface.name);
+        } catch (const Error& error) {
+            return encode_refusal({error, {}});
+        }
+        meshing.complex.regions = request.surface.regions;
+    }
+    const bool alternating = request.surface.inside == Inside::alternating;
+    TetMesh mesh = mesh_with_tetgen(meshing, alternating);
+    if (alternating) keep_inside(mesh, meshing.complex);
     return encode_answer(mesh);
 }
 

@@ -15,10 +15,9 @@
 
 #include "mesh/dataset.hpp"
 #include "mesh/error.hpp"
+#include "mesh/surface.hpp"
 
 namespace cellproj {
-
-using Reader = Dataset (*)(const std::filesystem::path&);
 
 // A file of this process alone.
 inline std::filesystem::path fuzz_file(const std::string& suffix) {
@@ -44,7 +43,18 @@ inline void require_consistent(const Dataset& dataset) {
     if (!good) __builtin_trap();
 }
 
-inline int fuzz(Reader reader, const std::string& suffix) {
+// Surfaces say themselves what holds of them.
+inline void require_consistent(const Surface& surface) {
+    try {
+        validate(surface);
+    } catch (const Error&) {
+        __builtin_trap();
+    }
+}
+
+// A reader is a function from a path to a Dataset or a Surface.
+template <class Reader>
+int fuzz(Reader reader, const std::string& suffix) {
     try {
         require_consistent(reader(fuzz_file(suffix)));
     } catch (const Error&) {
@@ -54,14 +64,16 @@ inline int fuzz(Reader reader, const std::string& suffix) {
 }
 
 // One input as one file.
-inline int fuzz_one_file(Reader reader, const std::string& suffix, const std::uint8_t* bytes, std::size_t size) {
+template <class Reader>
+int fuzz_one_file(Reader reader, const std::string& suffix, const std::uint8_t* bytes, std::size_t size) {
     write_fuzz_file(suffix, {reinterpret_cast<const char*>(bytes), size});
     return fuzz(reader, suffix);
 }
 
 // One input as two files of one stem, the second one behind the first zero byte.
-inline int fuzz_two_files(Reader reader, const std::string& first, const std::string& second, const std::uint8_t* bytes,
-                          std::size_t size) {
+template <class Reader>
+int fuzz_two_files(Reader reader, const std::string& first, const std::string& second, const std::uint8_t* bytes,
+                   std::size_t size) {
     const std::string_view input(reinterpret_cast<const char*>(bytes), size);
     const std::size_t cut = std::min(input.find('\0'), size);
     write_fuzz_file(first, input.substr(0, cut));

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string>
 
+#include "tests/support/surface_files.hpp"
 #include "tests/support/text_meshes.hpp"
 
 namespace {
@@ -27,6 +28,12 @@ int main(int count, char** arguments) {
         }
     }
     write(folder / "medit" / "sample", medit_file() + '\0' + medit_solutions());
+    write(folder / "off" / "sample", off_file());
+    for (const bool binary : {false, true})
+        write(folder / "ply" / (binary ? "binary" : "ascii"), ply_file(binary));
+    write(folder / "poly" / "poly", '\0' + poly_file());
+    write(folder / "poly" / "smesh", '\1' + smesh_file());
+    write(folder / "poly" / "with_nodes", std::string(1, '\0') + "0\n1 0\n1\n3 1 2 3\n0\n" + '\0' + tetgen_nodes(1));
     write(folder / "su2" / "sample", su2_file());
     // 2 x 2 x 2 points, all at the origin, the last but one a hole: 12 bytes of dimensions, 96 of coordinates, 32 of
     // IBLANK.
