@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
