@@ -233,7 +233,7 @@ public:
         result.cells.kinds.reserve(static_cast<std::size_t>(types_.GetNumberOfValues()));
         list.reserve(static_cast<std::size_t>(cells_.GetNumberOfConnectivityIds()));
         for (cell_ = 0; cell_ < types_.GetNumberOfValues(); ++cell_) {
-            const std::size_t begin = list.size();
+            const std::size_t begin = list.size(), before = result.cells.size();
             const int type = types_.GetValue(cell_);
             const std::optional<KindRule> rule = rule_for(type);
             if (!rule) continue;
@@ -263,22 +263,22 @@ public:
             } else {
                 result.cells.kinds.push_back(rule->kind);
             }
-            add_rows(result);
+            add_rows(result, before);
         }
         return result;
     }
 
 private:
-    // The row of the cell at hand for what was appended of it. Rows are kept from the first one on that differs from its
-    // cell's own number.
-    void add_rows(VolumeCells& result) const {
-        const std::size_t cells = result.cells.size();
-        if (result.rows.empty() && cells == static_cast<std::size_t>(cell_) + 1) return;
+    // The row of the cell at hand for all cells from number `before` on. Rows are kept from the first one on that differs
+    // from its cell's own number.
+    void add_rows(VolumeCells& result, std::size_t before) const {
+        const std::size_t cells = result.cells.size(), row = static_cast<std::size_t>(cell_);
+        if (result.rows.empty() && before == row && cells == row + 1) return;
         if (result.rows.empty()) {
-            result.rows.resize(std::min(cells, static_cast<std::size_t>(cell_)));
+            result.rows.resize(before);
             std::iota(result.rows.begin(), result.rows.end(), std::uint64_t{0});
         }
-        result.rows.resize(cells, static_cast<std::uint64_t>(cell_));
+        result.rows.resize(cells, row);
     }
 
     [[noreturn]] void fail(ErrorKind kind, const std::string& expected, const std::string& found) const {

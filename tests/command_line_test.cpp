@@ -193,10 +193,10 @@ TEST_F(CommandLine, CellFieldsConstantOrAveraged) {
 }
 
 TEST_F(CommandLine, RawVolumesAndHowToReadThem) {
-    write("voxels.raw", "??" + std::string(24, '\x07'));
+    write("voxels.raw", "??" + std::string(12, '\x07') + std::string(12, '\x08'));
     const Outcome info = run("info voxels.raw --dims 2 3 4 --type int8 --spacing 1 1 0.5 --header 2");
     EXPECT_EQ(info.code, 0) << info.text;
-    for (const char* words : {"raw volume", "24 (2x3x4)", "z 0 .. 1.5", "7 .. 7",
+    for (const char* words : {"raw volume", "24 (2x3x4)", "z 0 .. 1.5", "7 .. 8",
                               "render voxels.raw --dims 2 3 4 --type int8 --spacing 1 1 0.5 --origin 0 0 0 --header 2 -o"}) {
         EXPECT_NE(info.text.find(words), std::string::npos) << "no \"" << words << "\" in:\n" << info.text;
     }

@@ -29,6 +29,13 @@
 namespace cellproj {
 namespace {
 
+// `grid` stays: to_dataset empties what it is given.
+Dataset dataset_of(vtkUnstructuredGrid& grid, const char* place, int subdivide = 1) {
+    vtkNew<vtkUnstructuredGrid> copy;
+    copy->DeepCopy(&grid);
+    return to_dataset(*copy, place, place, subdivide);
+}
+
 double volume_of(const TetMesh& mesh) {
     double sum = 0;
     for (CellId t = 0; t < mesh.tets.size(); ++t)
@@ -92,7 +99,7 @@ protected:
 TEST_P(CellsOfHigherOrder, ArePavedByTheirPieces) {
     const auto grid = cube();
     add_field(*grid);
-    const Dataset dataset = to_dataset(*grid, "cube", "cube");
+    const Dataset dataset = dataset_of(*grid, "cube");
     EXPECT_EQ(dataset.cells.size(), static_cast<std::size_t>(grid->GetNumberOfCells()) * GetParam().pieces);
     EXPECT_EQ(dataset.skipped_cells, 0U);
     TetrahedralizeReport report;
@@ -115,7 +122,7 @@ TEST_P(CellsOfHigherOrder, FitTheirNeighbours) {
         grid->GetPoints()->SetPoint(p, x.x + bump * x.y, x.y - bump * x.z, x.z + bump);
     }
     TetrahedralizeReport report;
-    const TetMesh mesh = tetrahedralize(to_dataset(*grid, "cube", "cube"), &report);
+    const TetMesh mesh = tetrahedralize(dataset_of(*grid, "cube"), &report);
     EXPECT_EQ(report.inverted, 0U);
     EXPECT_NEAR(volume_of(mesh), 8.0, 1e-11);
     const Adjacency adjacency = build_adjacency(mesh);
@@ -183,7 +190,7 @@ TEST(CurvedCells, CentresThatATypeHasAreUsed) {
         SCOPED_TRACE(type.type);
         const auto grid = unit_cell(type.type);
         add_field(*grid);
-        const Dataset dataset = to_dataset(*grid, "cell", "cell");
+        const Dataset dataset = dataset_of(*grid, "cell");
         EXPECT_EQ(dataset.cells.size(), type.pieces);
         EXPECT_EQ(dataset.points.size(), static_cast<std::size_t>(grid->GetNumberOfPoints()) + type.new_points);
         TetrahedralizeReport report;
@@ -206,8 +213,8 @@ TEST(CurvedCells, TwoChordsLeaveAQuarterOfTheError) {
                 grid->GetPoints()->SetPoint(p, x.x, x.y, x.z * (1 + 4 * a * x.x * (1 - x.x)));
             }
             const double exact = 1 + 2 * a / 3;
-            const double corners = volume_of(tetrahedralize(to_dataset(*grid, "cell", "cell", 0)));
-            const double nodes = volume_of(tetrahedralize(to_dataset(*grid, "cell", "cell", 1)));
+            const double corners = volume_of(tetrahedralize(dataset_of(*grid, "cell", 0)));
+            const double nodes = volume_of(tetrahedralize(dataset_of(*grid, "cell", 1)));
             EXPECT_NEAR((exact - nodes) / (exact - corners), 0.25, 1e-13) << a << " " << type;
         }
     }
