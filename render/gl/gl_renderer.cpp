@@ -4,9 +4,9 @@
 #include <glad/gl.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "classify/segment_method.hpp"
 #include "render/gl/shaders.hpp"
 
 namespace cellproj::gl {
@@ -17,6 +17,9 @@ namespace {
 // enough that projection and drawing overlap.
 constexpr std::size_t cells_per_chunk = 16384;
 
+// In scene units, where half the diagonal of the mesh's box is 1: no segment is longer than the diagonal.
+constexpr double longest_segment = 2.0;
+
 // The context must be current before the members that are OpenGL objects are made.
 OsmesaContext current(OsmesaContext context) {
     context.make_current();
@@ -25,10 +28,7 @@ OsmesaContext current(OsmesaContext context) {
 
 }  // namespace
 
-GlRenderer::GlRenderer(OsmesaContext context)
-    : context_(current(std::move(context))),
-      parallel_(shaders::cell_vert, shaders::preintegrated_frag, ""),
-      perspective_(shaders::cell_vert, shaders::preintegrated_frag, "#define PERSPECTIVE\n") {}
+GlRenderer::GlRenderer(OsmesaContext context) : context_(current(std::move(context))) {}
 
 // The OpenGL objects below are deleted in their own context, whatever is current now.
 GlRenderer::~GlRenderer() { context_.make_current(); }
@@ -44,18 +44,22 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
-    if (same_transfer && table_ && table_->size() == quality.table_size) return;
+    if (same_transfer && shader_ && method_ == quality.method) return;
 
-    table_.reset();  // no stale table behind a failure
+    shader_.reset();  // no stale table behind a failure
     const SceneUnits& units = prepared_->units();
-    // No segment is longer than the diagonal of the box.
-    table_.emplace(*scene.transfer, TableDomain{units.scalar_low, units.scalar_high, 2 * units.length},
-                   quality.table_size);
-    // Emission and extinction per mesh unit become those per unit of length of the scene.
-    std::vector<float> texels(table_->texels().size());
-    std::transform(table_->texels().begin(), table_->texels().end(), texels.begin(),
-                   [&](float x) { return static_cast<float>(x * units.length); });
-    table_texture_ = Texture3d(quality.table_size, texels);
+    shader_ = make_segment_shader(quality.method,
+                                  in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length),
+                                  longest_segment, prepared_->mean_chord());
+    method_ = quality.method;
+}
+
+const Program& GlRenderer::program_for(bool perspective) {
+    const auto key = std::pair(method_.kind, perspective);
+    const auto known = programs_.find(key);
+    if (known != programs_.end()) return known->second;
+    return programs_[key] = Program(shaders::cell_vert, shaders::cell_frag + shader_->source(),
+                                    perspective ? "#define PERSPECTIVE\n" : "");
 }
 
 Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality,
@@ -77,8 +81,9 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     const CellStream cells(*prepared_, camera, size);
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
-    const Program& program = cells.transform().perspective() ? perspective_ : parallel_;
+    const Program& program = program_for(cells.transform().perspective());
     set_uniforms(program, cells);
+    shader_->bind(program);
     program.use();
     draw(cells, order, statistics);
 
@@ -91,7 +96,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.counts.cells = scene.mesh->tets.size();
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
     statistics.counts.unordered = order_report.unordered;
-    statistics.method = "preint3d:" + std::to_string(quality.table_size);
+    statistics.method = to_string(quality.method);
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
     statistics.order = "mpvo";
@@ -105,11 +110,6 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 
 void GlRenderer::set_uniforms(const Program& program, const CellStream& cells) const {
     const ScreenTransform& transform = cells.transform();
-    const double length_scale = table_->length_scale() / prepared_->units().length;
-    const double longest = table_->domain().max_length / prepared_->units().length;
-    program.set("table_size", static_cast<float>(table_->size()));
-    program.set("inverse_length_scale", static_cast<float>(1.0 / length_scale));
-    program.set("inverse_log_range", static_cast<float>(1.0 / std::log2(1.0 + longest / length_scale)));
     if (!transform.perspective()) return;
     const glm::dvec2 center = transform.principal_point();
     program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
@@ -122,7 +122,6 @@ void GlRenderer::draw(const CellStream& cells, std::span<const CellId> order, St
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // associated colours, back to front
-    glBindTextureUnit(0, table_texture_.name());
     TriangleBatch batch;
     for (std::size_t begin = 0; begin < order.size(); begin += cells_per_chunk) {
         const Stopwatch project;

@@ -4,13 +4,16 @@
 // buffers in chunks, so that the projection of one chunk overlaps the drawing of those before it.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
+#include <utility>
 
-#include "classify/preintegration_table.hpp"
 #include "render/cell_stream.hpp"
 #include "render/gl/objects.hpp"
 #include "render/gl/osmesa_context.hpp"
+#include "render/gl/segment_shader.hpp"
 #include "render/gl/triangle_stream.hpp"
 #include "render/prepared_scene.hpp"
 #include "render/renderer.hpp"
@@ -27,16 +30,17 @@ public:
                  Statistics* statistics) override;
 
 private:
+    const Program& program_for(bool perspective);
     void set_uniforms(const Program& program, const CellStream& cells) const;
     void draw(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
 
     OsmesaContext context_;
-    Program parallel_, perspective_;
+    std::map<std::pair<MethodKind, bool>, Program> programs_;  // by kind and whether in perspective
     TriangleStream stream_;
     FloatTarget target_;
     std::optional<PreparedScene> prepared_;
-    std::optional<PreintegrationTable> table_;
-    Texture3d table_texture_;
+    Method method_;
+    std::unique_ptr<SegmentShader> shader_;  // of method_, for the prepared scene
 };
 
 }  // namespace cellproj::gl

@@ -59,21 +59,6 @@ MappedBuffer::MappedBuffer(std::size_t bytes) {
     memory_ = {static_cast<std::byte*>(memory), bytes};
 }
 
-Texture3d::Texture3d(int size, std::span<const float> texels) {
-    assert(texels.size() == 4 * static_cast<std::size_t>(size) * static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-    GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_3D, 1, &name);
-    texture_ = Object<delete_texture>(name);
-    glTextureStorage3D(name, 1, GL_RGBA32F, size, size, size);
-    glTextureSubImage3D(name, 0, 0, 0, 0, size, size, size, GL_RGBA, GL_FLOAT, texels.data());
-    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
-        glTextureParameteri(name, axis, GL_CLAMP_TO_EDGE);
-    }
-    check_errors("uploading a 3D table");
-}
-
 FloatTarget::FloatTarget(ImageSize size) : size_(size) {
     GLint largest = 0, largest_viewport[2]{};
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);

@@ -54,18 +54,6 @@ private:
     std::span<std::byte> memory_;
 };
 
-// size³ texels RGBA float32, linear filter, clamped to the edge.
-class Texture3d {
-public:
-    Texture3d() = default;
-    Texture3d(int size, std::span<const float> texels);
-
-    unsigned int name() const { return texture_.name(); }
-
-private:
-    Object<delete_texture> texture_;
-};
-
 // A colour buffer RGBA float32 of the size of a picture.
 class FloatTarget {
 public:

@@ -8,6 +8,7 @@
 namespace cellproj::gl::shaders {
 
 extern const std::string cell_vert;
-extern const std::string preintegrated_frag;
+extern const std::string cell_frag;      // needs one of the following behind it
+extern const std::string preint3d_glsl;
 
 }  // namespace cellproj::gl::shaders

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/gl/segment_shader.hpp"
+
+#include <cassert>
+
+namespace cellproj::gl {
+
+std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const TransferFunction& transfer,
+                                                   double max_length, [[maybe_unused]] double mean_length) {
+    assert(max_length > 0.0 && mean_length > 0.0);
+    switch (method.kind) {
+        case MethodKind::preint3d:
+            return make_preint3d_shader(method, transfer, max_length);
+        default:
+            assert(false && "no such method");
+            return nullptr;
+    }
+}
+
+}  // namespace cellproj::gl
