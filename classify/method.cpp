@@ -20,20 +20,20 @@ struct Row {
     MethodKind kind;
     const char* name;
     int least_size, default_size, most_size;  // 0: no size
-    bool has_tolerance, has_scale, has_storage, has_interpolation;
+    bool has_tolerance, has_scale, has_storage, has_interpolation, has_blending;
 };
 
 constexpr std::array<Row, 10> rows{{
-    {MethodKind::shirley_tuchman, "shirley-tuchman", 0, 0, 0, false, false, false, false},
-    {MethodKind::average, "average", 0, 0, 0, false, false, false, true},
-    {MethodKind::homogeneous, "homogeneous", 0, 0, 0, false, false, false, true},
-    {MethodKind::linear, "linear", 1, 8, 1000, false, false, false, true},
-    {MethodKind::stein, "stein", 0, 0, 0, false, false, false, false},
-    {MethodKind::preint2d, "preint2d", 2, 256, 4096, false, false, true, false},
-    {MethodKind::preint2d_exp, "preint2d-exp", 2, 256, 4096, false, false, true, false},
-    {MethodKind::preint3d, "preint3d", 2, 64, 256, false, true, true, false},
-    {MethodKind::integral, "integral", 0, 0, 0, false, false, false, false},
-    {MethodKind::exact, "exact", 0, 0, 0, true, false, false, false},
+    {MethodKind::shirley_tuchman, "shirley-tuchman", 0, 0, 0, false, false, false, false, false},
+    {MethodKind::average, "average", 0, 0, 0, false, false, false, true, true},
+    {MethodKind::homogeneous, "homogeneous", 0, 0, 0, false, false, false, true, false},
+    {MethodKind::linear, "linear", 1, 8, 1000, false, false, false, true, false},
+    {MethodKind::stein, "stein", 0, 0, 0, false, false, false, false, false},
+    {MethodKind::preint2d, "preint2d", 2, 256, 4096, false, false, true, false, false},
+    {MethodKind::preint2d_exp, "preint2d-exp", 2, 256, 4096, false, false, true, false, false},
+    {MethodKind::preint3d, "preint3d", 2, 64, 256, false, true, true, false, false},
+    {MethodKind::integral, "integral", 0, 0, 0, false, false, false, false, false},
+    {MethodKind::exact, "exact", 0, 0, 0, true, false, false, false, false},
 }};
 
 const Row& row_of(MethodKind kind) {
@@ -50,6 +50,7 @@ constexpr std::array<Word<TableStorage>, 3> storages{
     {{"uint8", TableStorage::uint8}, {"float16", TableStorage::float16}, {"float32", TableStorage::float32}}};
 constexpr std::array<Word<Interpolation>, 2> interpolations{
     {{"pixels", Interpolation::pixels}, {"vertices", Interpolation::vertices}}};
+constexpr std::array<Word<Blending>, 2> blendings{{{"once", Blending::once}, {"half", Blending::half}}};
 
 template <class Words, class Value>
 bool set_if_known(const Words& words, bool allowed, std::string_view part, Value& value) {
@@ -94,6 +95,7 @@ std::string choices(const Row& row) {
     if (row.has_scale) parts.push_back("linear or log");
     if (row.has_storage) parts.push_back("uint8, float16 or float32");
     if (row.has_interpolation) parts.push_back("pixels or vertices");
+    if (row.has_blending) parts.push_back("once or half");
     std::string text;
     for (const std::string& part : parts)
         text += (text.empty() ? "" : "; ") + part;
@@ -118,7 +120,8 @@ bool set_part(const Row& row, std::string_view part, Method& method) {
     return set_size(row, part, method) || set_tolerance(row, part, method) ||
            set_if_known(scales, row.has_scale, part, method.scale) ||
            set_if_known(storages, row.has_storage, part, method.storage) ||
-           set_if_known(interpolations, row.has_interpolation, part, method.interpolation);
+           set_if_known(interpolations, row.has_interpolation, part, method.interpolation) ||
+           set_if_known(blendings, row.has_blending, part, method.blending);
 }
 
 const Row& require_known(const std::string& name, const std::string& place) {
@@ -163,6 +166,7 @@ std::string to_string(const Method& method) {
     add_choice(row.has_scale, scales, method.scale, defaults.scale);
     add_choice(row.has_storage, storages, method.storage, defaults.storage);
     add_choice(row.has_interpolation, interpolations, method.interpolation, defaults.interpolation);
+    add_choice(row.has_blending, blendings, method.blending, defaults.blending);
     return text;
 }
 

@@ -32,6 +32,10 @@ enum class TableScale { linear, logarithmic };
 // What a texel of a table is kept in.
 enum class TableStorage { uint8, float16, float32 };
 
+// How a cell is blended over what is behind it: in one pass, or as by the three passes of WVG91 §3.2, half of the opacity
+// before and half after its colour (half_opacity.hpp).
+enum class Blending { once, half };
+
 // One method with its choices; those that its kind has no use for keep their defaults.
 struct Method {
     MethodKind kind = MethodKind::preint3d;
@@ -40,13 +44,19 @@ struct Method {
     TableScale scale = TableScale::logarithmic;
     TableStorage storage = TableStorage::float32;
     Interpolation interpolation = Interpolation::pixels;
+    Blending blending = Blending::once;
 
     bool operator==(const Method&) const = default;
 };
 
+// Whether the renderer computes light at the vertices (vertex_light.hpp) instead of for each pixel (segment_method.hpp).
+inline bool light_at_vertices(const Method& method) {
+    return method.kind == MethodKind::shirley_tuchman || method.interpolation == Interpolation::vertices;
+}
+
 // From "NAME" or "NAME:PART:PART…", parts in any order: "integral", "preint3d:128:linear:uint8", "linear:8:vertices",
-// "exact:1e-6". What is not said has its default. Throws Error (option), naming `place`, for an unknown name or part
-// (the nearest known one is told), a part that the method has no use for, and a number out of its range.
+// "average:half", "exact:1e-6". What is not said has its default. Throws Error (option), naming `place`, for an unknown
+// name or part (the nearest known one is told), a part that the method has no use for, and a number out of its range.
 Method parse_method(std::string_view text, const std::string& place = "method");
 
 // The text that parse_method turns into this method; sizes and tolerances are always said.

@@ -23,7 +23,7 @@ struct RenderOptions {
     InputOptions input;
     std::filesystem::path output, camera, transfer, stats;
     std::string field, projection = "perspective", size = "512x512", cell_values = "constant",
-                method = to_string(Method{});
+                method = to_string(Method{}), target = to_string(Quality{}.target);
     std::vector<double> from{-1, -2, 1}, up{0, 0, 1}, background{1, 1, 1};
     double orbit_degrees = 0;
     int frames = 1, bits = 8;
@@ -166,7 +166,8 @@ ScalarField choose_field(const RenderOptions& options, const Input& input) {
 void render_pictures(const RenderOptions& options) {
     // Everything that can be refused without reading the mesh comes first.
     const ImageSize size = parse_size(options.size);
-    const Quality quality{.method = parse_method(options.method, "--method")};
+    const Quality quality{.method = parse_method(options.method, "--method"),
+                          .target = parse_target_format(options.target, "--target")};
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -197,6 +198,7 @@ void render_pictures(const RenderOptions& options) {
                {"cellproj field", field->name},
                {"cellproj camera", to_json(cameras[i])},
                {"cellproj method", statistics.method},
+               {"cellproj target", statistics.target},
                {"cellproj order", statistics.order},
                {"cellproj backend", statistics.backend + ", " + statistics.backend_version}});
         statistics.ms.write = writing.ms();
@@ -237,6 +239,8 @@ void add_render_command(CLI::App& app) {
     command->add_option("--bits", options->bits, "Bits per channel of a PNG: 8 or 16")
         ->check(CLI::IsMember({8, 16}))->capture_default_str();
     command->add_option("--method", options->method, "How a ray's piece in a cell becomes light: NAME[:CHOICE…] (classify/README.md)")
+        ->capture_default_str();
+    command->add_option("--target", options->target, "What cells are blended in: rgba8, rgba16, rgba16f or rgba32f")
         ->capture_default_str();
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
     command->callback([options] { render_pictures(*options); });

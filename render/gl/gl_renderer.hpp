@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cell projection through OpenGL: RKE00 §2–3 on a float32 target. Projected triangles stream through a ring of mapped
+// Cell projection through OpenGL: RKE00 §2–3. Projected triangles stream through a ring of mapped
 // buffers in chunks, so that the projection of one chunk overlaps the drawing of those before it.
 #pragma once
 
@@ -8,8 +8,9 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
+#include <string>
 
+#include "classify/vertex_light.hpp"
 #include "render/cell_stream.hpp"
 #include "render/gl/objects.hpp"
 #include "render/gl/osmesa_context.hpp"
@@ -30,17 +31,19 @@ public:
                  Statistics* statistics) override;
 
 private:
-    const Program& program_for(bool perspective);
-    void set_uniforms(const Program& program, const CellStream& cells) const;
-    void draw(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
+    const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
+    void draw_segments(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
+    void draw_lit(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
 
     OsmesaContext context_;
-    std::map<std::pair<MethodKind, bool>, Program> programs_;  // by kind and whether in perspective
-    TriangleStream stream_;
-    FloatTarget target_;
+    std::map<std::string, Program> programs_;  // by the text of the fragment shader and the defines
+    TriangleStream segments_, lit_;
+    Target target_;
     std::optional<PreparedScene> prepared_;
     Method method_;
-    std::unique_ptr<SegmentShader> shader_;  // of method_, for the prepared scene
+    // Of method_, for the prepared scene: either light for each pixel or light at the vertices.
+    std::unique_ptr<SegmentShader> shader_;
+    std::unique_ptr<VertexLighting> lighting_;
 };
 
 }  // namespace cellproj::gl

@@ -11,6 +11,7 @@
 
 #include "project/camera.hpp"
 #include "render/image.hpp"
+#include "render/target_format.hpp"
 
 namespace cellproj::gl {
 
@@ -54,19 +55,22 @@ private:
     std::span<std::byte> memory_;
 };
 
-// A colour buffer RGBA float32 of the size of a picture.
-class FloatTarget {
+// A colour buffer of the size of a picture.
+class Target {
 public:
-    FloatTarget() = default;
+    Target() = default;
     // Throws Error (option) when the driver cannot draw that large.
-    explicit FloatTarget(ImageSize size);
+    Target(ImageSize size, TargetFormat format);
 
-    ImageSize size() const { return size_; }
+    bool is(ImageSize size, TargetFormat format) const {
+        return size_.width == size.width && size_.height == size.height && format_ == format;
+    }
     void clear_and_bind() const;  // transparent black; viewport set
     Image read() const;           // waits for the drawing to end
 
 private:
     ImageSize size_{0, 0};
+    TargetFormat format_ = TargetFormat::rgba32f;
     Object<delete_texture> color_;
     Object<delete_framebuffer> framebuffer_;
 };

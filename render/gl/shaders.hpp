@@ -10,5 +10,7 @@ namespace cellproj::gl::shaders {
 extern const std::string cell_vert;
 extern const std::string cell_frag;      // needs one of the following behind it
 extern const std::string preint3d_glsl;
+extern const std::string lit_vert;
+extern const std::string lit_frag;
 
 }  // namespace cellproj::gl::shaders

@@ -42,4 +42,7 @@ void main() {
     float segment = min(depth_difference, abs(v_cell.w)) * ray;
     s = clamp(s, v_cell.y, v_cell.z);
     light = light_of_segment(s.x, s.y, segment);
+#ifdef HALF_OPACITY  // three passes in one: classify/half_opacity.hpp
+    light *= vec4(vec3(1.0 - 0.5 * light.a), 1.0 - 0.25 * light.a);
+#endif
 }
