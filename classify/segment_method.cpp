@@ -3,32 +3,23 @@
 
 #include <cassert>
 
-#include "classify/preintegration_table.hpp"
+#include "classify/segment_methods.hpp"
 
 namespace cellproj {
 
-namespace {
-
-class Preint3d : public SegmentMethod {
-public:
-    Preint3d(const Method& method, const TransferFunction& transfer, double max_length)
-        : table_(transfer, {0.0, 1.0, max_length}, method.size) {}
-
-    Light light(double s_f, double s_b, double length) const override { return table_.lookup(s_f, s_b, length); }
-    std::size_t table_bytes() const override { return table_.texels().size() * sizeof(float); }
-
-private:
-    PreintegrationTable table_;
-};
-
-}  // namespace
-
 std::unique_ptr<SegmentMethod> make_segment_method(const Method& method, const TransferFunction& transfer,
-                                                   double max_length, [[maybe_unused]] double mean_length) {
+                                                   double max_length, double mean_length) {
     assert(max_length > 0.0 && mean_length > 0.0);
     switch (method.kind) {
+        case MethodKind::average:
+        case MethodKind::homogeneous:
+        case MethodKind::linear:
+        case MethodKind::stein:
+            return make_sampled_method(method, transfer);
+        case MethodKind::preint2d:
+        case MethodKind::preint2d_exp:
         case MethodKind::preint3d:
-            return std::make_unique<Preint3d>(method, transfer, max_length);
+            return make_table_method(method, transfer, max_length, mean_length);
         default:
             assert(false && "no such method");
             return nullptr;

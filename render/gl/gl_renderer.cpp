@@ -46,16 +46,21 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     }
     if (same_transfer && shader_ && method_ == quality.method) return;
 
-    shader_.reset();  // no stale table behind a failure
     const SceneUnits& units = prepared_->units();
-    shader_ = make_segment_shader(quality.method,
-                                  in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length),
-                                  longest_segment, prepared_->mean_chord());
+    const TransferFunction transfer =
+        in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
+    auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
+    const bool keeps = shader && same_cells && method_ == quality.method;
+    if (!keeps || !shader->update(transfer)) {
+        shader.reset();  // its memory first
+        shader = make_segment_shader(quality.method, transfer, longest_segment, prepared_->mean_chord());
+    }
+    shader_ = std::move(shader);
     method_ = quality.method;
 }
 
 const Program& GlRenderer::program_for(bool perspective) {
-    const auto key = std::pair(method_.kind, perspective);
+    const auto key = std::pair(shader_->source(), perspective);
     const auto known = programs_.find(key);
     if (known != programs_.end()) return known->second;
     return programs_[key] = Program(shaders::cell_vert, shaders::cell_frag + shader_->source(),

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "render/cell_stream.hpp"
@@ -35,7 +36,7 @@ private:
     void draw(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
 
     OsmesaContext context_;
-    std::map<std::pair<MethodKind, bool>, Program> programs_;  // by kind and whether in perspective
+    std::map<std::pair<std::string, bool>, Program> programs_;  // by the method's source and whether in perspective
     TriangleStream stream_;
     FloatTarget target_;
     std::optional<PreparedScene> prepared_;
