@@ -5,24 +5,12 @@
 #include <utility>
 
 #include "classify/half_opacity.hpp"
-#include "classify/preintegration_table.hpp"
+#include "classify/segment_methods.hpp"
 #include "classify/shirley_tuchman.hpp"
 
 namespace cellproj {
 
 namespace {
-
-class Preint3d : public SegmentMethod {
-public:
-    Preint3d(const Method& method, const TransferFunction& transfer, double max_length)
-        : table_(transfer, {0.0, 1.0, max_length}, method.size) {}
-
-    Light light(double s_f, double s_b, double length) const override { return table_.lookup(s_f, s_b, length); }
-    std::size_t table_bytes() const override { return table_.texels().size() * sizeof(float); }
-
-private:
-    PreintegrationTable table_;
-};
 
 // Another method, blended in three passes.
 class HalfOpacity : public SegmentMethod {
@@ -41,7 +29,7 @@ private:
 }  // namespace
 
 std::unique_ptr<SegmentMethod> make_segment_method(const Method& method, const TransferFunction& transfer,
-                                                   double max_length, [[maybe_unused]] double mean_length) {
+                                                   double max_length, double mean_length) {
     assert(max_length > 0.0 && mean_length > 0.0);
     if (method.blending == Blending::half) {
         Method once = method;
@@ -51,8 +39,15 @@ std::unique_ptr<SegmentMethod> make_segment_method(const Method& method, const T
     switch (method.kind) {
         case MethodKind::shirley_tuchman:
             return std::make_unique<ShirleyTuchman>(transfer);
+        case MethodKind::average:
+        case MethodKind::homogeneous:
+        case MethodKind::linear:
+        case MethodKind::stein:
+            return make_sampled_method(method, transfer);
+        case MethodKind::preint2d:
+        case MethodKind::preint2d_exp:
         case MethodKind::preint3d:
-            return std::make_unique<Preint3d>(method, transfer, max_length);
+            return make_table_method(method, transfer, max_length, mean_length);
         default:
             assert(false && "no such method");
             return nullptr;

@@ -89,16 +89,20 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     }
     if (same_transfer && (shader_ || lighting_) && method_ == quality.method) return;
 
-    shader_.reset();  // no stale table behind a failure
-    lighting_.reset();
     const SceneUnits& units = prepared_->units();
     const TransferFunction transfer =
         in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
+    lighting_.reset();
+    auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
+    const bool keeps = shader && same_cells && method_ == quality.method;
     if (light_at_vertices(quality.method)) {
+        shader.reset();
         lighting_ = make_vertex_lighting(quality.method, transfer, longest_segment, prepared_->mean_chord());
-    } else {
-        shader_ = make_segment_shader(quality.method, transfer, longest_segment, prepared_->mean_chord());
+    } else if (!keeps || !shader->update(transfer)) {
+        shader.reset();  // its memory first
+        shader = make_segment_shader(quality.method, transfer, longest_segment, prepared_->mean_chord());
     }
+    shader_ = std::move(shader);
     method_ = quality.method;
 }
 

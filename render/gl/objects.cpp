@@ -143,6 +143,10 @@ void Program::set(const char* uniform, float x, float y) const {
     glProgramUniform2f(program_.name(), location(uniform), x, y);
 }
 
+void Program::set(const char* uniform, const glm::vec4& value) const {
+    glProgramUniform4f(program_.name(), location(uniform), value.x, value.y, value.z, value.w);
+}
+
 void check_errors(const char* where) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) return;

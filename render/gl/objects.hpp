@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include <glm/vec4.hpp>
+
 #include "project/camera.hpp"
 #include "render/image.hpp"
 #include "render/target_format.hpp"
@@ -85,6 +87,7 @@ public:
     void use() const;
     void set(const char* uniform, float value) const;  // asserts that the uniform exists
     void set(const char* uniform, float x, float y) const;
+    void set(const char* uniform, const glm::vec4& value) const;
 
 private:
     int location(const char* uniform) const;

@@ -21,6 +21,9 @@ public:
     virtual ~SegmentShader() = default;
 
     virtual const std::string& source() const = 0;
+    // Makes it the shader of another function, in the same scene units, with the same source(), at less cost than a new
+    // one. False, and nothing has changed, when it cannot.
+    virtual bool update([[maybe_unused]] const TransferFunction& transfer) { return false; }
     // Sets the uniforms of `program`, which holds the source, and binds the textures.
     virtual void bind(const Program& program) const = 0;
     virtual std::size_t table_bytes() const = 0;
@@ -30,7 +33,11 @@ public:
 std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const TransferFunction& transfer,
                                                    double max_length, double mean_length);
 
-// One per kind, in methods/.
+// One per family of methods, in methods/.
+std::unique_ptr<SegmentShader> make_sampled_shader(const Method& method, const TransferFunction& transfer);
+std::unique_ptr<SegmentShader> make_preint2d_shader(const Method& method, const TransferFunction& transfer,
+                                                    double mean_length);
+std::unique_ptr<SegmentShader> make_preint2d_exp_shader(const Method& method, const TransferFunction& transfer);
 std::unique_ptr<SegmentShader> make_preint3d_shader(const Method& method, const TransferFunction& transfer,
                                                     double max_length);
 

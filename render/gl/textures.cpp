@@ -5,6 +5,8 @@
 
 #include <cassert>
 
+#include "classify/table_encoding.hpp"
+
 namespace cellproj::gl {
 
 namespace {
@@ -16,15 +18,6 @@ GLenum internal_format(TableStorage storage) {
         case TableStorage::float32: break;
     }
     return GL_RGBA32F;
-}
-
-std::size_t texel_bytes(TableStorage storage) {
-    switch (storage) {
-        case TableStorage::uint8: return 4;
-        case TableStorage::float16: return 8;
-        case TableStorage::float32: break;
-    }
-    return 16;
 }
 
 GLuint make_table(GLenum target) {
@@ -47,7 +40,7 @@ Texture Texture::table_2d(int size, TableStorage storage, std::span<const float>
     texture.texture_ = Object<delete_texture>(name);
     glTextureStorage2D(name, 1, internal_format(storage), size, size);
     glTextureSubImage2D(name, 0, 0, 0, size, size, GL_RGBA, GL_FLOAT, texels.data());
-    texture.bytes_ = texels.size() / 4 * texel_bytes(storage);
+    texture.bytes_ = texels.size() / 4 * bytes_per_texel(storage);
     check_errors("uploading a 2D table");
     return texture;
 }
@@ -59,7 +52,7 @@ Texture Texture::table_3d(int size, TableStorage storage, std::span<const float>
     texture.texture_ = Object<delete_texture>(name);
     glTextureStorage3D(name, 1, internal_format(storage), size, size, size);
     glTextureSubImage3D(name, 0, 0, 0, 0, size, size, size, GL_RGBA, GL_FLOAT, texels.data());
-    texture.bytes_ = texels.size() / 4 * texel_bytes(storage);
+    texture.bytes_ = texels.size() / 4 * bytes_per_texel(storage);
     check_errors("uploading a 3D table");
     return texture;
 }

@@ -20,6 +20,15 @@ float attenuation_mean(float d) {
     return d < 0.0625 ? series : (1.0 - exp(-d)) / d;
 }
 
+// 1 - exp(-d), without rounding above 1.
+float opacity_of_depth(float d) { return min(d * attenuation_mean(d), 1.0); }
+
+// Of a segment with the same emission and extinction [per length] everywhere.
+vec4 homogeneous_light(vec3 emission, float extinction, float segment) {
+    float depth = extinction * segment;
+    return vec4(emission * segment * attenuation_mean(depth), opacity_of_depth(depth));
+}
+
 void main() {
     float thickness = max(min(min(v_ridges.x, v_ridges.y), v_ridges.z), 0.0);
     float other_scalar = v_base.y + v_cell.x * thickness;
