@@ -27,7 +27,7 @@ TEST(Method, NamesAndChoicesAreRead) {
 
 TEST(Method, TextAndMethodAreInverse) {
     for (const std::string text :
-         {"shirley-tuchman", "average", "homogeneous:vertices", "linear:8", "stein", "preint2d:256", "preint2d-exp:64:float16",
+         {"shirley-tuchman", "average", "homogeneous:vertices", "linear:8", "average:half", "average:vertices:half", "stein", "preint2d:256", "preint2d-exp:64:float16",
           "preint3d:64", "preint3d:32:linear:uint8", "integral", "exact:1e-06"}) {
         EXPECT_EQ(to_string(parse_method(text)), text);
     }
@@ -43,9 +43,9 @@ TEST(Method, WhatItCannotUseIsRefused) {
         }
         return "";
     };
-    EXPECT_NE(message("preint4d").find("did you mean \"preint3d\""), std::string::npos);
+    EXPECT_NE(message("preint3e").find("did you mean \"preint3d\""), std::string::npos);
     EXPECT_NE(message("preint3d:1000").find("a size from 2 to 256"), std::string::npos);
-    for (const std::string text : {"", "integral:64", "exact:0", "exact:nan", "preint3d:vertices", "preint3d:", "preint3d:64x", "linear:0"})
+    for (const std::string text : {"", "integral:64", "exact:0", "exact:nan", "preint3d:vertices", "preint3d:", "preint3d:64x", "linear:0", "linear:4:half", "shirley-tuchman:vertices"})
         EXPECT_NE(message(text).find("--method"), std::string::npos) << text;
 }
 

@@ -100,17 +100,17 @@ TEST(HalfOpacity, TheColourIsRightToSecondOrder) {
 
 // So n cells let through what 2n cells do with C·D, exactly: the error of the whole still falls with 1/n only.
 TEST(HalfOpacity, OnTheExampleOfTable1) {
-    for (const Row& row : table_1) {
+    constexpr std::array<Row, 7> printed{{{1, 83.31, 0.573}, {2, 88.72, 0.533}, {5, 90.88, 0.512}, {10, 91.45, 0.506},
+                                          {50, 91.87, 0.501}, {100, 91.92, 0.501}, {10000, 91.97, 0.500}}};
+    for (const Row& row : printed) {
         const int n = row.cells;
-        const Light half = stacked(half_opacity(c_times_d(n)), n), twice = stacked(c_times_d(2 * n), 2 * n);
-        EXPECT_NEAR(half.opacity, twice.opacity, 1e-11);
+        const Light half = stacked(half_opacity(c_times_d(n)), n);
+        expect_printed(half, row);
+        EXPECT_NEAR(half.opacity, stacked(c_times_d(2 * n), 2 * n).opacity, 1e-11);
         // Σ of C/n·r·r²ᵏ over the cells k in front, r = 1 − D/2n: a geometric series.
         const double r = 1 - depth / (2.0 * n);
         EXPECT_NEAR(half.color.x, emission / 255 / n * r * (1 - std::pow(r, 2 * n)) / (1 - r * r), 1e-12);
     }
-    const Light one = half_opacity(c_times_d(1));
-    EXPECT_NEAR(255 * one.color.x, 83.31, 0.005);
-    EXPECT_NEAR(one.opacity, 0.573, 0.0005);
 }
 
 // ---- Table 2: one cell split into n, exponential integration, composited in different precisions.
