@@ -10,7 +10,8 @@
 //
 // With C·D, for a homogeneous cell of optical depth D ≤ 1 and unit chromaticity: colour D·(1 − D/2), where
 // 1 − e^(−D) = D·(1 − D/2 + D²/6 − …) is right. So the colour is right to second order, error −D³/6, where one pass has
-// +D²/2; the opacity has D²/4, half of the error of one pass.
+// +D²/2; the opacity has D²/4, half of the error of one pass. The two do not match: an opaque stack of such cells shows
+// (1 − D/2)/(1 − D/4) of its colour, where C·D shows all of it.
 #pragma once
 
 #include "classify/transfer_function.hpp"

@@ -100,6 +100,17 @@ TEST(HalfOpacity, TheColourIsRightToSecondOrder) {
     }
 }
 
+// Where a medium is so deep that nothing behind is seen, C·D shows its colour whatever the cells are, and three passes a
+// darker one: each cell adds d·(1 − d/2) and takes d·(1 − d/4).
+TEST(HalfOpacity, DarkensADeepMedium) {
+    for (const double d : {0.5, 0.1, 0.02}) {
+        const Light average{glm::dvec3(d), d};
+        const int cells = static_cast<int>(40 / d);  // e^(−40) is left
+        EXPECT_NEAR(stacked(average, cells).color.x, 1, 1e-9);
+        EXPECT_NEAR(stacked(half_opacity(average), cells).color.x, (1 - d / 2) / (1 - d / 4), 1e-9);
+    }
+}
+
 // So n cells let through what 2n cells do with C·D, exactly: the error of the whole still falls with 1/n only.
 TEST(HalfOpacity, OnTheExampleOfTable1) {
     constexpr std::array<Row, 7> printed{{{1, 83.31, 0.573}, {2, 88.72, 0.533}, {5, 90.88, 0.512}, {10, 91.45, 0.506},
