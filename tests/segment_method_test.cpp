@@ -91,6 +91,36 @@ TEST(SegmentMethod, TheAverageGrowsWithLengthUntilItIsOpaque) {
     expect_light(method->light(1, 0, 2), {0.5, 0, 1}, 1, 1e-15, "cut off");
 }
 
+// WVG91 Table 1: intensity and opacity of one homogeneous cell (emission 127.5, optical depth ln 2 in all) cut into n
+// parts. C·D depends on the number of parts, exponential integration does not. As printed: two and three decimals.
+TEST(SegmentMethod, SubdivisionIsAsInTheTableOfWilhelmsAndVanGelder) {
+    struct Row {
+        int parts;
+        double color, opacity;
+    };
+    const TransferFunction cell(OpticalModel::emitter, {{0, {127.5, 127.5, 127.5}}}, {{0, std::log(2.0)}});
+    const auto composited = [](const SegmentMethod& method, int parts) {
+        Light sum;
+        for (int part = 0; part < parts; ++part)
+            sum = composite(sum, method.light(0.5, 0.5, 1.0 / parts));
+        return sum;
+    };
+    const auto average = make("average", cell), homogeneous = make("homogeneous", cell);
+    for (const Row& row : std::vector<Row>{{1, 127.50, 0.693},
+                                           {2, 105.41, 0.573},
+                                           {5, 96.72, 0.526},
+                                           {10, 94.26, 0.512},
+                                           {50, 92.42, 0.502},
+                                           {100, 92.19, 0.501},
+                                           {10000, 91.97, 0.500}}) {
+        const Light linear = composited(*average, row.parts), exponential = composited(*homogeneous, row.parts);
+        EXPECT_NEAR(linear.color.r, row.color, 0.00501) << row.parts;
+        EXPECT_NEAR(linear.opacity, row.opacity, 0.000501) << row.parts;
+        EXPECT_NEAR(exponential.color.r, 91.97, 0.00501) << row.parts;
+        EXPECT_NEAR(exponential.opacity, 0.5, 1e-6) << row.parts;
+    }
+}
+
 // With q ∝ τ linear in s: exact opacity is 1 − e^(−D), and D − D²/2 ≤ 1 − e^(−D) ≤ D.
 TEST(SegmentMethod, TheAverageErrsByHalfTheSquareOfTheDepth) {
     const TransferFunction f = ramp(3, {1, 1, 1}, {1, 1, 1});
