@@ -157,6 +157,19 @@ TEST(TableUpdate, DoesNotDependOnWhatLiesBeside) {
     expect_updates_like_new(functions, [](const auto& f) { return PreintegrationTable(f, {0, 1, 2}, size); });
 }
 
+// The value at a step is that of its right side: a change of it belongs to the texel on the step.
+TEST(TableUpdate, StepsOnTexelsBelongToTheChange) {
+    const double on_texel = 5.0 / (size - 1), behind = 9.0 / (size - 1);
+    const auto step = [&](double left, double right) {
+        return density(white, {{0, 1}, {on_texel, left}, {on_texel, right}, {behind, 1}, {1, 9}});
+    };
+    const std::vector<TransferFunction> functions{step(2, 4), step(2, 6), step(3, 6), step(3, 3)};
+    expect_updates_like_new(functions, [](const auto& f) { return MeanValueTable(f, size, TableStorage::float32); });
+    expect_updates_like_new(functions,
+                            [](const auto& f) { return MeanLengthTable(f, 0.2, size, TableStorage::float32); });
+    expect_updates_like_new(functions, [](const auto& f) { return PreintegrationTable(f, {0, 1, 2}, size); });
+}
+
 // EKE01 §3.5: a change at one scalar touches the pairs that enclose it, at most half of the table, least near its ends.
 TEST(TableUpdate, ALocalChangeComputesAtMostHalfOfTheTable) {
     Extinctions fine;
