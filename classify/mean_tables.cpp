@@ -22,7 +22,8 @@ std::vector<float> empty_table(int size) {
 }
 
 void store(std::vector<float>& texels, int size, int i, int j, const glm::dvec4& value) {
-    const std::size_t at = 4 * (static_cast<std::size_t>(i) + static_cast<std::size_t>(size) * static_cast<std::size_t>(j));
+    const std::size_t at =
+        4 * (static_cast<std::size_t>(i) + static_cast<std::size_t>(size) * static_cast<std::size_t>(j));
     for (int channel = 0; channel < 4; ++channel)
         texels[at + static_cast<std::size_t>(channel)] = stored_value(value[channel]);
 }
@@ -84,8 +85,9 @@ std::size_t MeanValueTable::update(const TransferFunction& transfer) {
     return fill(*changed);
 }
 
-// EKE01 takes differences of running integrals. We add up the integrals from texel to texel along each row instead, which
-// costs the same: nothing cancels, and a pair depends on nothing outside its own scalars, not even in the last bit.
+// EKE01 takes differences of running integrals. We add up the integrals from texel to texel along each row instead,
+// which costs the same: nothing cancels, and a pair depends on nothing outside its own scalars, not even in the last
+// bit.
 std::size_t MeanValueTable::fill(const ScalarInterval& changed) {
     const auto scalar = [&](int i) { return scalar_of_texel(i, size_, {0.0, 1.0, 1.0}); };
     for (int i = 0; i + 1 < size_; ++i) {

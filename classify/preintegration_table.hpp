@@ -21,9 +21,9 @@
 // l_max, l₀ is not used, and a segment's light is what the interpolation gives. And so is storage in fewer bits
 // (table_encoding.hpp).
 //
-// Texels are computed as float32: q, τ and their reciprocals should lie well inside 1e±38. The caller chooses the unit of length
-// accordingly, best so that the mesh has a size of about 1. A value above the largest float32 is stored as that one,
-// never as infinity.
+// Texels are computed as float32: q, τ and their reciprocals should lie well inside 1e±38. The caller chooses the unit
+// of length accordingly, best so that the mesh has a size of about 1. A value above the largest float32 is stored as
+// that one, never as infinity.
 //
 // Accuracy is limited by the trilinear interpolation: classify/README.md, measured by
 // tests/preintegration_table_test.cpp. Details of the transfer function that are narrower than a texel are blurred in

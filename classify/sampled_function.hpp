@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A transfer function as a table of 4096 samples with linear interpolation between them: the classification of single
-// scalars, as all four papers do it. At the samples it is the function; between two of them, h = 1/4095 apart, it is off by
-// up to h·|change of slope|/4 at a bend and by up to the whole jump at a step, and a spike that lies between is not seen.
+// scalars, as all four papers do it. At the samples it is the function; between two of them, h = 1/4095 apart, it is
+// off by up to h·|change of slope|/4 at a bend and by up to the whole jump at a step, and a spike that lies between is
+// not seen.
 #pragma once
 
 #include <glm/vec4.hpp>

@@ -12,8 +12,8 @@ namespace cellproj {
 
 namespace {
 
-// WVG91 Eq. 9–10, "C·D": emission and extinction times length, no attenuation inside. Their means are those of both ends.
-// At length 1/τ̄ the segment is opaque: what lies behind is cut off, from the colour as well.
+// WVG91 Eq. 9–10, "C·D": emission and extinction times length, no attenuation inside. Their means are those of both
+// ends. At length 1/τ̄ the segment is opaque: what lies behind is cut off, from the colour as well.
 Light average_light(const glm::dvec4& front, const glm::dvec4& back, double length) {
     const glm::dvec4 mean = 0.5 * (front + back);
     const double depth = mean.w * length;

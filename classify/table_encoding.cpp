@@ -24,9 +24,12 @@ glm::vec4 largest_values(std::span<const float> texels) {
 // The nearest number to 0..1 that the storage holds. Rounded here, not by the driver, so that both sides read the same.
 float rounded(float fraction, TableStorage storage) {
     switch (storage) {
-        case TableStorage::uint8: return std::round(fraction * 255.0F) / 255.0F;
-        case TableStorage::float16: return glm::unpackHalf1x16(glm::packHalf1x16(fraction));
-        case TableStorage::float32: break;
+        case TableStorage::uint8:
+            return std::round(fraction * 255.0F) / 255.0F;
+        case TableStorage::float16:
+            return glm::unpackHalf1x16(glm::packHalf1x16(fraction));
+        case TableStorage::float32:
+            break;
     }
     return fraction;
 }
@@ -57,9 +60,12 @@ glm::dvec4 TableEncoding::value(const float* texel) const {
 
 std::size_t bytes_per_texel(TableStorage storage) {
     switch (storage) {
-        case TableStorage::uint8: return 4;
-        case TableStorage::float16: return 8;
-        case TableStorage::float32: break;
+        case TableStorage::uint8:
+            return 4;
+        case TableStorage::float16:
+            return 8;
+        case TableStorage::float32:
+            break;
     }
     return 16;
 }

@@ -20,7 +20,8 @@ template <class Node>
 std::optional<ScalarInterval> changed_nodes(const std::vector<Node>& before, const std::vector<Node>& after) {
     const std::size_t shorter = std::min(before.size(), after.size());
     std::size_t leading = 0, trailing = 0;
-    while (leading < shorter && same(before[leading], after[leading])) ++leading;
+    while (leading < shorter && same(before[leading], after[leading]))
+        ++leading;
     if (leading == before.size() && leading == after.size()) return std::nullopt;
     while (leading + trailing < shorter &&
            same(before[before.size() - 1 - trailing], after[after.size() - 1 - trailing]))

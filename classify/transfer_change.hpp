@@ -20,9 +20,9 @@ struct ScalarInterval {
     bool meets(double a, double b) const { return std::min(a, b) <= high && std::max(a, b) >= low; }
 };
 
-// The smallest interval between nodes outside of which both functions have the same nodes, so that they and every integral of
-// theirs are the same to the last bit; all scalars when the optical model or what holds outside differs; none when the
-// functions are equal. O(nodes).
+// The smallest interval between nodes outside of which both functions have the same nodes, so that they and every
+// integral of theirs are the same to the last bit; all scalars when the optical model or what holds outside differs;
+// none when the functions are equal. O(nodes).
 std::optional<ScalarInterval> changed_scalars(const TransferFunction& before, const TransferFunction& after);
 
 }  // namespace cellproj

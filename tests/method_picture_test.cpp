@@ -20,14 +20,27 @@ namespace {
 
 constexpr ImageSize size{64, 64};
 
-const std::vector<std::string> methods{
-    "average",       "homogeneous",           "linear:1",                "linear:9",         "stein",
-    "preint2d:32",   "preint2d:32:float16",   "preint2d:32:uint8",       "preint2d-exp:32",  "preint2d-exp:32:float16",
-    "preint2d-exp:32:uint8", "preint3d:16",   "preint3d:16:float16",     "preint3d:16:uint8", "preint3d:16:linear",
-    "preint3d:16:linear:float16", "preint3d:16:linear:uint8"};
+const std::vector<std::string> methods{"average",
+                                       "homogeneous",
+                                       "linear:1",
+                                       "linear:9",
+                                       "stein",
+                                       "preint2d:32",
+                                       "preint2d:32:float16",
+                                       "preint2d:32:uint8",
+                                       "preint2d-exp:32",
+                                       "preint2d-exp:32:float16",
+                                       "preint2d-exp:32:uint8",
+                                       "preint3d:16",
+                                       "preint3d:16:float16",
+                                       "preint3d:16:uint8",
+                                       "preint3d:16:linear",
+                                       "preint3d:16:linear:float16",
+                                       "preint3d:16:linear:uint8"};
 
 TransferFunction ramp(OpticalModel model = OpticalModel::density) {
-    return {model, {{0, {0.1, 0.2, 0.9}}, {0.4, {0.2, 1.0, 0.2}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.2}, {0.5, 6.0}, {1, 2.0}}};
+    return {
+        model, {{0, {0.1, 0.2, 0.9}}, {0.4, {0.2, 1.0, 0.2}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.2}, {0.5, 6.0}, {1, 2.0}}};
 }
 
 Scene one_cell(TransferFunction transfer) {
@@ -60,9 +73,9 @@ public:
     Model(const std::string& method, const Scene& scene, const Camera& camera)
         : scene_(scene), prepared_(scene), transform_(camera, size) {
         const SceneUnits& units = prepared_.units();
-        method_ = make_segment_method(parse_method(method),
-                                      in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length), 2.0,
-                                      prepared_.mean_chord());
+        method_ = make_segment_method(
+            parse_method(method), in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length),
+            2.0, prepared_.mean_chord());
     }
 
     glm::dvec4 at(const glm::dvec2& screen) const {
@@ -85,13 +98,15 @@ private:
     std::unique_ptr<SegmentMethod> method_;
 };
 
-// How far a pixel lies outside of what the model gives within 1/512 of a pixel around its centre, the rasterizer's grid.
+// How far a pixel lies outside of what the model gives within 1/512 of a pixel around its centre, the rasterizer's
+// grid.
 double largest_error(const Model& model, const Image& image) {
     double largest = 0.0;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
             glm::dvec4 low(1e300), high(-1e300);
-            for (const glm::dvec2& offset : {glm::dvec2(0, 0), glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
+            for (const glm::dvec2& offset :
+                 {glm::dvec2(0, 0), glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
                 const glm::dvec4 light = model.at(glm::dvec2(x + 0.5, y + 0.5) + offset / 512.0);
                 low = glm::min(low, light);
                 high = glm::max(high, light);
@@ -105,7 +120,9 @@ double largest_error(const Model& model, const Image& image) {
     return largest;
 }
 
-bool is_8_bit(const std::string& method) { return method.find("uint8") != std::string::npos; }
+bool is_8_bit(const std::string& method) {
+    return method.find("uint8") != std::string::npos;
+}
 
 TEST(MethodPicture, FragmentsComputeWhatTheModelDoes) {
     const auto renderer = make_renderer(Backend::gl_osmesa);
@@ -118,7 +135,8 @@ TEST(MethodPicture, FragmentsComputeWhatTheModelDoes) {
                 // float32 terms and lookups: measured 8e-6. The driver (llvmpipe) filters 8-bit texels in 8 bits: one
                 // rounding to 1/255 of the range per axis, times the length where the texel is an extinction: 1e-2.
                 EXPECT_LT(error, is_8_bit(method) ? 2e-2 : 2e-5) << method;
-                const auto opaque = std::count_if(image.pixels.begin(), image.pixels.end(), [](const auto& p) { return p.a > 0.05F; });
+                const auto opaque =
+                    std::count_if(image.pixels.begin(), image.pixels.end(), [](const auto& p) { return p.a > 0.05F; });
                 EXPECT_GT(opaque, 200) << method;  // there is something to compare
             }
 }
@@ -131,7 +149,8 @@ TEST(MethodPicture, ExtremesStayFiniteAndPhysical) {
              TransferFunction(OpticalModel::density, colors, {{0, 0}, {1, 1e8}}),
              TransferFunction(OpticalModel::density, colors, {{0, 0}, {half, 0}, {next, 1e6}, {after, 0}, {1, 0}}),
              TransferFunction(OpticalModel::density, colors, {{0, 1}, {half, 1}, {next, 1e4}, {1, 1e4}}),
-             TransferFunction(OpticalModel::emitter, {{0, {1e6, 0, 0}}, {1, {0, 0, 1e6}}}, {{0, 0}, {0.5, 1e-30}, {1, 1e6}}),
+             TransferFunction(OpticalModel::emitter, {{0, {1e6, 0, 0}}, {1, {0, 0, 1e6}}},
+                              {{0, 0}, {0.5, 1e-30}, {1, 1e6}}),
              TransferFunction(OpticalModel::emitter, colors, {{0, 0}}),
          })
         for (const std::string& method : methods) {
@@ -150,7 +169,8 @@ TEST(MethodPicture, AnotherTransferFunctionReachesTheNextPicture) {
         scene.transfer = std::make_shared<TransferFunction>(f);
         return renderer.render(scene, view(), size, {.method = parse_method(method)}).pixels;
     };
-    const TransferFunction local(OpticalModel::density, ramp().color_nodes(), {{0, 0.2}, {0.5, 6.0}, {0.7, 0.5}, {1, 2.0}});
+    const TransferFunction local(OpticalModel::density, ramp().color_nodes(),
+                                 {{0, 0.2}, {0.5, 6.0}, {0.7, 0.5}, {1, 2.0}});
     const TransferFunction bright(OpticalModel::emitter, ramp().color_nodes(), {{0, 9}, {1, 0}});
     for (const std::string& method : methods) {
         Scene scene = one_cell(ramp());

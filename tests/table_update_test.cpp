@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Local table updates, EKE01 §3.5: what changed, which pairs are computed, and that the result is that of a fresh table to
-// the last bit.
+// Local table updates, EKE01 §3.5: what changed, which pairs are computed, and that the result is that of a fresh table
+// to the last bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,7 +54,8 @@ TEST(ChangedScalars, LieBetweenTheUnchangedNeighbours) {
     more.push_back({2, 7});
     expect_changed(f, density(white, more), 1, infinity);
 
-    const Colors before{{0.1, {1, 0, 0}}, {0.3, {0, 1, 0}}, {0.5, {0, 0, 1}}}, after{{0.1, {1, 0, 0}}, {0.3, {0, 1, 1}}, {0.5, {0, 0, 1}}};
+    const Colors before{{0.1, {1, 0, 0}}, {0.3, {0, 1, 0}}, {0.5, {0, 0, 1}}},
+        after{{0.1, {1, 0, 0}}, {0.3, {0, 1, 1}}, {0.5, {0, 0, 1}}};
     expect_changed(density(before, hill), density(after, with(hill, 3, {0.6, 1})), 0.1, 0.8);
 }
 
@@ -90,28 +91,39 @@ void expect_updates_like_new(const std::vector<TransferFunction>& functions, Mak
     }
 }
 
-// A function and random edits of it: nodes moved, changed, inserted (also as steps) and removed. The largest extinction stays:
-// 9 at the last node.
+// A function and random edits of it: nodes moved, changed, inserted (also as steps) and removed. The largest extinction
+// stays: 9 at the last node.
 std::vector<TransferFunction> edited_functions(OpticalModel model, unsigned seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     Colors colors{{0, {0, 0, 1}}, {0.3, {0, 1, 0}}, {0.7, {1, 1, 0}}, {1, {1, 0, 0}}};
     Extinctions extinctions{{0, 0.5}, {0.25, 4}, {0.5, 0}, {0.75, 8}, {1, 9}};
     std::vector<TransferFunction> functions{{model, colors, extinctions}};
-    const auto between = [&](const auto& nodes, std::size_t i) { return std::lerp(nodes[i - 1].scalar, nodes[i].scalar, unit(random)); };
+    const auto between = [&](const auto& nodes, std::size_t i) {
+        return std::lerp(nodes[i - 1].scalar, nodes[i].scalar, unit(random));
+    };
     for (int edit = 0; edit < 20; ++edit) {
         const auto i = std::uniform_int_distribution<std::size_t>(1, extinctions.size() - 2)(random);
         const auto at = extinctions.begin() + static_cast<std::ptrdiff_t>(i);
         switch (edit % 5) {
-            case 0: extinctions.insert(at, {between(extinctions, i), 8 * unit(random)}); break;
-            case 1: at->extinction = 8 * unit(random); break;
-            case 2: at->scalar = std::clamp(at->scalar + 0.01, extinctions[i - 1].scalar, extinctions[i + 1].scalar); break;
-            case 3: colors[1].color.r = unit(random); break;
+            case 0:
+                extinctions.insert(at, {between(extinctions, i), 8 * unit(random)});
+                break;
+            case 1:
+                at->extinction = 8 * unit(random);
+                break;
+            case 2:
+                at->scalar = std::clamp(at->scalar + 0.01, extinctions[i - 1].scalar, extinctions[i + 1].scalar);
+                break;
+            case 3:
+                colors[1].color.r = unit(random);
+                break;
             default:
                 if (extinctions.size() > 6) extinctions.erase(at);
         }
         for (std::size_t k = extinctions.size() - 1; k >= 2; --k)  // a clamped move may have made three of a step
-            if (extinctions[k].scalar == extinctions[k - 2].scalar) extinctions.erase(extinctions.begin() + static_cast<std::ptrdiff_t>(k) - 1);
+            if (extinctions[k].scalar == extinctions[k - 2].scalar)
+                extinctions.erase(extinctions.begin() + static_cast<std::ptrdiff_t>(k) - 1);
         functions.emplace_back(model, colors, extinctions);
     }
     return functions;
@@ -120,8 +132,10 @@ std::vector<TransferFunction> edited_functions(OpticalModel model, unsigned seed
 TEST(TableUpdate, GivesAFreshTableBitByBitFromTheAffectedPairsOnly) {
     for (const OpticalModel model : {OpticalModel::density, OpticalModel::emitter}) {
         const auto functions = edited_functions(model, 5);
-        expect_updates_like_new(functions, [](const auto& f) { return MeanValueTable(f, size, TableStorage::float32); });
-        expect_updates_like_new(functions, [](const auto& f) { return MeanLengthTable(f, 0.2, size, TableStorage::uint8); });
+        expect_updates_like_new(functions,
+                                [](const auto& f) { return MeanValueTable(f, size, TableStorage::float32); });
+        expect_updates_like_new(functions,
+                                [](const auto& f) { return MeanLengthTable(f, 0.2, size, TableStorage::uint8); });
         expect_updates_like_new(functions, [](const auto& f) { return PreintegrationTable(f, {0, 1, 2}, size); });
         expect_updates_like_new(functions, [](const auto& f) {
             return PreintegrationTable(f, {0, 1, 2}, size, TableScale::linear, TableStorage::float16);
@@ -129,14 +143,30 @@ TEST(TableUpdate, GivesAFreshTableBitByBitFromTheAffectedPairsOnly) {
     }
 }
 
-// Far more nodes than texels, and a node of 1e9 before the change, which running integrals would carry into all that follows.
+// Far more nodes than texels, and a node of 1e9 before the change, which running integrals would carry into all that
+// follows.
 TEST(TableUpdate, DoesNotDependOnWhatLiesBeside) {
     Extinctions comb{{0, 1e9}};
     for (int i = 1; i < 3000; ++i)
         comb.push_back({i / 2999.0, i % 2 == 0 ? 0.1 : 7.0});
-    const std::vector<TransferFunction> functions{density(white, comb), density(white, with(comb, 1500, {comb[1500].scalar, 6}))};
+    const std::vector<TransferFunction> functions{density(white, comb),
+                                                  density(white, with(comb, 1500, {comb[1500].scalar, 6}))};
     expect_updates_like_new(functions, [](const auto& f) { return MeanValueTable(f, size, TableStorage::float32); });
-    expect_updates_like_new(functions, [](const auto& f) { return MeanLengthTable(f, 0.2, size, TableStorage::float32); });
+    expect_updates_like_new(functions,
+                            [](const auto& f) { return MeanLengthTable(f, 0.2, size, TableStorage::float32); });
+    expect_updates_like_new(functions, [](const auto& f) { return PreintegrationTable(f, {0, 1, 2}, size); });
+}
+
+// The value at a step is that of its right side: a change of it belongs to the texel on the step.
+TEST(TableUpdate, StepsOnTexelsBelongToTheChange) {
+    const double on_texel = 5.0 / (size - 1), behind = 9.0 / (size - 1);
+    const auto step = [&](double left, double right) {
+        return density(white, {{0, 1}, {on_texel, left}, {on_texel, right}, {behind, 1}, {1, 9}});
+    };
+    const std::vector<TransferFunction> functions{step(2, 4), step(2, 6), step(3, 6), step(3, 3)};
+    expect_updates_like_new(functions, [](const auto& f) { return MeanValueTable(f, size, TableStorage::float32); });
+    expect_updates_like_new(functions,
+                            [](const auto& f) { return MeanLengthTable(f, 0.2, size, TableStorage::float32); });
     expect_updates_like_new(functions, [](const auto& f) { return PreintegrationTable(f, {0, 1, 2}, size); });
 }
 
