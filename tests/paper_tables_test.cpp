@@ -159,7 +159,7 @@ struct PrecisionRow {
     double bits_16, bits_8, half_float;  // colours; double and float give 91.97 in every row
 };
 
-// To a tenth of a unit of the last digit and half a digit; papers.md prints them.
+// As classify/papers.md prints them: to half a unit of the last digit.
 constexpr std::array<PrecisionRow, 5> table_2{{{1, 91.97, 92.00, 91.95},
                                                {2, 91.97, 92.00, 91.95},
                                                {10, 91.98, 89.00, 91.77},
