@@ -41,29 +41,6 @@ ClippedTet wedge(const EyeVertex& a0, const EyeVertex& a1, const EyeVertex& a2, 
     return pieces;
 }
 
-SilhouetteVertex mix(const SilhouetteVertex& a, const SilhouetteVertex& b, double t) {
-    return {a.position + t * (b.position - a.position), a.base_depth + t * (b.base_depth - a.base_depth),
-            a.base_scalar + t * (b.base_scalar - a.base_scalar), a.ridges + t * (b.ridges - a.ridges)};
-}
-
-// Keeps the part of the polygon where side·(position[axis] − bound) ≤ 0.
-ClippedPolygon clip_line(const ClippedPolygon& polygon, int axis, double bound, double side) {
-    ClippedPolygon kept;
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-        const SilhouetteVertex& a = polygon.vertices[i];
-        const SilhouetteVertex& b = polygon.vertices[(i + 1) % polygon.count];
-        const double da = side * (a.position[axis] - bound), db = side * (b.position[axis] - bound);
-        if (da <= 0) kept.vertices[kept.count++] = a;
-        if ((da < 0 && db > 0) || (da > 0 && db < 0)) {
-            SilhouetteVertex& v = kept.vertices[kept.count++];
-            v = mix(a, b, da / (da - db));
-            v.position[axis] = bound;
-        }
-    }
-    if (kept.count < 3) kept.count = 0;
-    return kept;
-}
-
 }  // namespace
 
 ClippedTet clip_near(const std::array<EyeVertex, 4>& corners, double near) {
@@ -87,17 +64,6 @@ ClippedTet clip_near(const std::array<EyeVertex, 4>& corners, double near) {
         default:
             return {};
     }
-}
-
-ClippedPolygon clip_to_rectangle(const std::array<SilhouetteVertex, 3>& triangle, const Rectangle& rectangle) {
-    ClippedPolygon polygon;
-    polygon.count = 3;
-    for (std::size_t i = 0; i < 3; ++i) polygon.vertices[i] = triangle[i];
-    for (int axis = 0; axis < 2 && polygon.count > 0; ++axis) {
-        polygon = clip_line(polygon, axis, rectangle.low[axis], -1.0);
-        polygon = clip_line(polygon, axis, rectangle.high[axis], 1.0);
-    }
-    return polygon;
 }
 
 }  // namespace cellproj

@@ -8,9 +8,8 @@
 #include <array>
 #include <cstddef>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-
-#include "project/silhouette.hpp"
 
 namespace cellproj {
 
@@ -34,13 +33,44 @@ struct Rectangle {
 };
 
 // A convex polygon: a triangle cut by up to four lines.
+template <class Vertex>
 struct ClippedPolygon {
     std::size_t count = 0;  // 0 or 3 .. 7
-    std::array<SilhouetteVertex, 7> vertices;
+    std::array<Vertex, 7> vertices;
 };
 
-// The part of a silhouette's triangle inside a rectangle (Sutherland–Hodgman). All terms are affine in screen space, so the
-// new vertices are exact up to rounding.
-ClippedPolygon clip_to_rectangle(const std::array<SilhouetteVertex, 3>& triangle, const Rectangle& rectangle);
+// The part of a polygon where side·(position[axis] − bound) ≤ 0.
+template <class Vertex>
+ClippedPolygon<Vertex> clip_line(const ClippedPolygon<Vertex>& polygon, int axis, double bound, double side) {
+    ClippedPolygon<Vertex> kept;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const Vertex& a = polygon.vertices[i];
+        const Vertex& b = polygon.vertices[(i + 1) % polygon.count];
+        const double da = side * (a.position[axis] - bound), db = side * (b.position[axis] - bound);
+        if (da <= 0) kept.vertices[kept.count++] = a;
+        if ((da < 0 && db > 0) || (da > 0 && db < 0)) {
+            Vertex& v = kept.vertices[kept.count++];
+            v = mix(a, b, da / (da - db));
+            v.position[axis] = bound;
+        }
+    }
+    if (kept.count < 3) kept.count = 0;
+    return kept;
+}
+
+// The part of a triangle inside a rectangle (Sutherland–Hodgman). A Vertex has a `position` [pixels] and a function
+// mix(a, b, t) for the one between a (t = 0) and b (t = 1); when all its terms are affine in screen space, the new
+// vertices are exact up to rounding.
+template <class Vertex>
+ClippedPolygon<Vertex> clip_to_rectangle(const std::array<Vertex, 3>& triangle, const Rectangle& rectangle) {
+    ClippedPolygon<Vertex> polygon;
+    polygon.count = 3;
+    for (std::size_t i = 0; i < 3; ++i) polygon.vertices[i] = triangle[i];
+    for (int axis = 0; axis < 2 && polygon.count > 0; ++axis) {
+        polygon = clip_line(polygon, axis, rectangle.low[axis], -1.0);
+        polygon = clip_line(polygon, axis, rectangle.high[axis], 1.0);
+    }
+    return polygon;
+}
 
 }  // namespace cellproj

@@ -33,6 +33,12 @@ struct SilhouetteVertex {
     glm::dvec3 ridges;    // the thickness is their minimum
 };
 
+// Between a (t = 0) and b (t = 1), on the screen; all terms are affine there.
+inline SilhouetteVertex mix(const SilhouetteVertex& a, const SilhouetteVertex& b, double t) {
+    return {a.position + t * (b.position - a.position), a.base_depth + t * (b.base_depth - a.base_depth),
+            a.base_scalar + t * (b.base_scalar - a.base_scalar), a.ridges + t * (b.ridges - a.ridges)};
+}
+
 struct Silhouette {
     std::size_t triangle_count = 0;                          // 0, 1 or 2
     std::array<SilhouetteVertex, 4> vertices{};              // the corners

@@ -31,8 +31,53 @@ ScreenTransform relative_transform(const Camera& camera, ImageSize size, double 
     return {relative, size};
 }
 
-bool inside(const Rectangle& r, const glm::dvec2& low, const glm::dvec2& high) {
-    return low.x >= r.low.x && low.y >= r.low.y && high.x <= r.high.x && high.y <= r.high.y;
+// Radiance in float32: what is brighter than this does not come through, so that sums over all cells of a ray stay finite.
+constexpr double brightest_color = 1e30;
+
+bool inside(const Rectangle& r, const Rectangle& box) {
+    return box.low.x >= r.low.x && box.low.y >= r.low.y && box.high.x <= r.high.x && box.high.y <= r.high.y;
+}
+
+Rectangle bounding_box(const std::array<ScreenVertex, 4>& corners) {
+    Rectangle box{corners[0].position, corners[0].position};
+    for (std::size_t i = 1; i < 4; ++i) {
+        box.low = glm::min(box.low, corners[i].position);
+        box.high = glm::max(box.high, corners[i].position);
+    }
+    return box;
+}
+
+// Appends triangles, given by three indices into `vertices` each, as they are or cut to the guard rectangle.
+template <class Corner, class Vertex, class Convert>
+void append(std::span<const Corner> vertices, std::span<const std::array<std::uint8_t, 3>> triangles, bool cut,
+            const Rectangle& guard, Triangles<Vertex>& batch, Convert convert) {
+    auto first = static_cast<std::uint32_t>(batch.vertices.size());
+    if (!cut) {
+        for (const Corner& v : vertices) batch.vertices.push_back(convert(v));
+        for (const auto& triangle : triangles) {
+            for (const std::uint8_t corner : triangle) batch.indices.push_back(first + corner);
+        }
+        return;
+    }
+    for (const auto& [a, b, c] : triangles) {
+        const auto polygon = clip_to_rectangle(std::array{vertices[a], vertices[b], vertices[c]}, guard);
+        first = static_cast<std::uint32_t>(batch.vertices.size());
+        for (std::size_t i = 0; i < polygon.count; ++i) batch.vertices.push_back(convert(polygon.vertices[i]));
+        for (std::uint32_t i = 2; i < polygon.count; ++i) {
+            batch.indices.insert(batch.indices.end(), {first, first + i - 1, first + i});
+        }
+    }
+}
+
+// A vertex of the classical split in float64, with what is interpolated.
+struct LitCorner {
+    glm::dvec2 position;
+    double share;
+    glm::dvec3 color;
+};
+
+LitCorner mix(const LitCorner& a, const LitCorner& b, double t) {
+    return {a.position + t * (b.position - a.position), a.share + t * (b.share - a.share), a.color + t * (b.color - a.color)};
 }
 
 }  // namespace
@@ -63,14 +108,31 @@ CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, Imag
     });
 }
 
-void CellStream::project(std::span<const CellId> cells, TriangleBatch& batch) const {
+// Calls draw(corners) for every visible cell or, where the near plane cuts one, for its pieces; it says whether anything
+// was drawn.
+template <class Vertex, class Draw>
+void CellStream::for_each_piece(std::span<const CellId> cells, Triangles<Vertex>& batch, Draw draw) const {
     const auto& visible = prepared_.visible();
     for (const CellId cell : cells) {
         if (!visible[cell]) continue;
         Corners corners;
-        const bool drawn = load(cell, corners) ? project_corners(corners, batch) : project_clipped(cell, batch);
+        bool drawn = false;
+        if (load(cell, corners)) {
+            drawn = draw(corners);
+        } else {
+            const Pieces pieces = clipped(cell);
+            for (std::size_t piece = 0; piece < pieces.count; ++piece) drawn |= draw(pieces.corners[piece]);
+        }
         if (drawn) ++batch.drawn_cells;
     }
+}
+
+void CellStream::project(std::span<const CellId> cells, TriangleBatch& batch) const {
+    for_each_piece(cells, batch, [&](const Corners& corners) { return project_corners(corners, batch); });
+}
+
+void CellStream::project(std::span<const CellId> cells, const VertexLighting& lighting, LitBatch& batch) const {
+    for_each_piece(cells, batch, [&](const Corners& corners) { return light_corners(corners, lighting, batch); });
 }
 
 glm::dvec2 CellStream::snapped_position(const glm::dvec3& eye_point) const {
@@ -96,7 +158,7 @@ bool CellStream::load(CellId cell, Corners& corners) const {
     return true;
 }
 
-bool CellStream::project_clipped(CellId cell, TriangleBatch& batch) const {
+CellStream::Pieces CellStream::clipped(CellId cell) const {
     const TetMesh& mesh = *prepared_.scene().mesh;
     const bool per_point = prepared_.scene().field->location == FieldLocation::points;
     std::array<EyeVertex, 4> corners;
@@ -104,58 +166,88 @@ bool CellStream::project_clipped(CellId cell, TriangleBatch& batch) const {
         const VertexId v = mesh.tets[cell][i];
         corners[i] = {transform_.to_eye((mesh.points[v] - eye_) / prepared_.units().length), scalars_[per_point ? v : cell]};
     }
-    const ClippedTet pieces = clip_near(corners, near_depth_);
-    bool drawn = false;
-    for (std::size_t piece = 0; piece < pieces.count; ++piece) {
-        Corners screen;
+    const ClippedTet tets = clip_near(corners, near_depth_);
+    Pieces pieces{tets.count, {}};
+    for (std::size_t piece = 0; piece < tets.count; ++piece) {
         for (std::size_t i = 0; i < 4; ++i) {
-            screen[i] = on_screen(pieces.tets[piece][i].position, pieces.tets[piece][i].scalar);
+            pieces.corners[piece][i] = on_screen(tets.tets[piece][i].position, tets.tets[piece][i].scalar);
         }
-        drawn |= project_corners(screen, batch);
     }
-    return drawn;
+    return pieces;
 }
 
 bool CellStream::project_corners(const Corners& corners, TriangleBatch& batch) const {
-    glm::dvec2 low = corners[0].position, high = low;
-    for (std::size_t i = 1; i < 4; ++i) {
-        low = glm::min(low, corners[i].position);
-        high = glm::max(high, corners[i].position);
-    }
-    if (!covers_pixel(low, high)) return false;
+    const Rectangle box = bounding_box(corners);
+    if (!covers_pixel(box)) return false;
     const Silhouette silhouette = make_silhouette(corners, transform_.perspective());
     if (silhouette.triangle_count == 0) return false;
 
     const StreamVertex constants = cell_constants(corners, silhouette);
-    const auto base = static_cast<std::uint32_t>(batch.vertices.size());
-    if (inside(guard_, low, high)) {
-        for (const SilhouetteVertex& v : silhouette.vertices) batch.vertices.push_back(stream_vertex(v, constants));
-        for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {
-            for (const std::uint8_t corner : silhouette.triangles[t]) batch.indices.push_back(base + corner);
-        }
-        return true;
-    }
-    for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {
-        const auto& [a, b, c] = silhouette.triangles[t];
-        const auto& v = silhouette.vertices;
-        const ClippedPolygon polygon = clip_to_rectangle({v[a], v[b], v[c]}, guard_);
-        const auto first = static_cast<std::uint32_t>(batch.vertices.size());
-        for (std::size_t i = 0; i < polygon.count; ++i) {
-            batch.vertices.push_back(stream_vertex(polygon.vertices[i], constants));
-        }
-        for (std::uint32_t i = 2; i < polygon.count; ++i) {
-            batch.indices.insert(batch.indices.end(), {first, first + i - 1, first + i});
-        }
-    }
+    append(std::span<const SilhouetteVertex>(silhouette.vertices),
+           std::span(silhouette.triangles).first(silhouette.triangle_count), !inside(guard_, box), guard_, batch,
+           [&](const SilhouetteVertex& v) { return stream_vertex(v, constants); });
     return true;
 }
 
+bool CellStream::light_corners(const Corners& corners, const VertexLighting& lighting, LitBatch& batch) const {
+    const Rectangle box = bounding_box(corners);
+    if (!covers_pixel(box)) return false;
+    const ProjectedTet tet = project_tet(corners, transform_.perspective());
+    const auto thick = static_cast<std::size_t>(tet.thick);
+    if (tet.kind == ProjectionClass::nothing || tet.vertices[thick].thickness == 0.0) return false;
+
+    const VertexLight light = light_at(tet.vertices[thick], lighting);
+    std::array<LitCorner, 5> lit;
+    LitVertex constants{};
+    constants.weight = static_cast<float>(light.weight);
+    constants.opacity = static_cast<float>(light.opacity);
+    for (std::size_t v = 0; v < tet.vertex_count(); ++v) {
+        const ProjectedVertex& vertex = tet.vertices[v];
+        const double scalar = transform_.perspective() ? vertex.front_scalar / vertex.front_depth : vertex.front_scalar;
+        const glm::dvec3 color = v == thick ? light.color : lighting.color_at_silhouette(scalar, light);
+        lit[v] = {vertex.position, v == thick ? 1.0 : 0.0, glm::min(color, brightest_color)};
+        for (int channel = 0; channel < 3; ++channel) {
+            constants.brightest = std::max(constants.brightest, static_cast<float>(lit[v].color[channel]));
+        }
+    }
+    append(std::span<const LitCorner>(lit).first(tet.vertex_count()),
+           std::span(tet.triangles).first(tet.triangle_count()), !inside(guard_, box), guard_, batch,
+           [&](const LitCorner& corner) {
+               const glm::vec2 position = clip_space(corner.position);
+               LitVertex v = constants;
+               v.x = position.x;
+               v.y = position.y;
+               v.share = static_cast<float>(corner.share);
+               for (int channel = 0; channel < 3; ++channel) v.color[channel] = static_cast<float>(corner.color[channel]);
+               return v;
+           });
+    return true;
+}
+
+// The light of the segment at the thick vertex: what shaders/cell.frag computes for each pixel.
+VertexLight CellStream::light_at(const ProjectedVertex& thick, const VertexLighting& lighting) const {
+    if (!transform_.perspective()) return lighting.at_thick_vertex(thick.front_scalar, thick.back_scalar, thick.thickness);
+    const double front = thick.front_depth;
+    // Rounding must not carry the far end of a cell that reaches very far to infinity or beyond.
+    const double back = std::max(front - thick.thickness, 1e-15 * front);
+    const bool at_near_plane = front * near_depth_ > 0.999;
+    const double depth_difference = at_near_plane ? 1.0 / back : thick.thickness / (front * back);
+    const glm::dvec2 offset = (thick.position - transform_.principal_point()) / transform_.pixels_per_unit();
+    return lighting.at_thick_vertex(thick.front_scalar / front, thick.back_scalar / back,
+                                    depth_difference * glm::length(glm::dvec3(offset, 1.0)));
+}
+
 // Whether the box holds a pixel centre of the picture.
-bool CellStream::covers_pixel(const glm::dvec2& low, const glm::dvec2& high) const {
+bool CellStream::covers_pixel(const Rectangle& box) const {
     const glm::dvec2 picture(transform_.size().width, transform_.size().height);
-    const glm::dvec2 first = glm::max(glm::ceil(low - 0.5), glm::dvec2(0.0));
-    const glm::dvec2 last = glm::min(glm::floor(high - 0.5), picture - 1.0);
+    const glm::dvec2 first = glm::max(glm::ceil(box.low - 0.5), glm::dvec2(0.0));
+    const glm::dvec2 last = glm::min(glm::floor(box.high - 0.5), picture - 1.0);
     return first.x <= last.x && first.y <= last.y;
+}
+
+glm::vec2 CellStream::clip_space(const glm::dvec2& position) const {
+    const ImageSize size = transform_.size();
+    return {2 * position.x / size.width - 1, 2 * position.y / size.height - 1};
 }
 
 // The part of a vertex that is equal for a whole cell.
@@ -181,10 +273,10 @@ StreamVertex CellStream::cell_constants(const Corners& corners, const Silhouette
 }
 
 StreamVertex CellStream::stream_vertex(const SilhouetteVertex& v, const StreamVertex& constants) const {
-    const ImageSize size = transform_.size();
+    const glm::vec2 position = clip_space(v.position);
     StreamVertex out = constants;
-    out.x = static_cast<float>(2 * v.position.x / size.width - 1);
-    out.y = static_cast<float>(2 * v.position.y / size.height - 1);
+    out.x = position.x;
+    out.y = position.y;
     out.base_depth = static_cast<float>(v.base_depth);
     out.base_scalar = static_cast<float>(v.base_scalar);
     for (int ridge = 0; ridge < 3; ++ridge) out.ridges[ridge] = static_cast<float>(v.ridges[ridge]);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "classify/vertex_light.hpp"
 #include "project/camera.hpp"
 #include "project/clip.hpp"
 #include "project/silhouette.hpp"
@@ -28,9 +29,19 @@ struct StreamVertex {
     float depth_range;  // largest minus smallest depth; negative when the base is the back
 };
 
+// A vertex of the classical split with its light (classify/vertex_light.hpp). The last three are equal at all vertices of a cell.
+struct LitVertex {
+    float x, y;
+    float share;  // of the thick vertex: 1 there, 0 on the silhouette
+    float color[3];
+    float weight, opacity;  // at the thick vertex
+    float brightest;        // largest colour channel of the cell's vertices
+};
+
 // Triangles of consecutive cells, three indices each.
-struct TriangleBatch {
-    std::vector<StreamVertex> vertices;
+template <class Vertex>
+struct Triangles {
+    std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
     std::size_t drawn_cells = 0;
 
@@ -40,6 +51,8 @@ struct TriangleBatch {
         drawn_cells = 0;
     }
 };
+using TriangleBatch = Triangles<StreamVertex>;
+using LitBatch = Triangles<LitVertex>;
 
 // The mesh as one camera sees it. Every point is transformed once.
 class CellStream {
@@ -49,6 +62,8 @@ public:
     // Appends the triangles of the given cells, in their order. Cells that cannot be seen, lie outside the view, or fall
     // between pixel centres add nothing.
     void project(std::span<const CellId> cells, TriangleBatch& batch) const;
+    // The same as the classical split, with light at its vertices.
+    void project(std::span<const CellId> cells, const VertexLighting& lighting, LitBatch& batch) const;
 
     const ScreenTransform& transform() const { return transform_; }
     // Perspective: depth of the near plane [SceneUnits::length], a thousandth of the distance to what the camera looks at or of
@@ -59,12 +74,22 @@ public:
 private:
     using Corners = std::array<ScreenVertex, 4>;
 
+    struct Pieces {
+        std::size_t count;
+        std::array<Corners, 3> corners;
+    };
+
+    template <class Vertex, class Draw>
+    void for_each_piece(std::span<const CellId> cells, Triangles<Vertex>& batch, Draw draw) const;
     glm::dvec2 snapped_position(const glm::dvec3& eye_point) const;
     ScreenVertex on_screen(const glm::dvec3& eye_point, double scalar) const;
     bool load(CellId cell, Corners& corners) const;
-    bool project_clipped(CellId cell, TriangleBatch& batch) const;
+    Pieces clipped(CellId cell) const;
     bool project_corners(const Corners& corners, TriangleBatch& batch) const;
-    bool covers_pixel(const glm::dvec2& low, const glm::dvec2& high) const;
+    bool light_corners(const Corners& corners, const VertexLighting& lighting, LitBatch& batch) const;
+    VertexLight light_at(const ProjectedVertex& thick, const VertexLighting& lighting) const;
+    bool covers_pixel(const Rectangle& box) const;
+    glm::vec2 clip_space(const glm::dvec2& position) const;
     StreamVertex cell_constants(const Corners& corners, const Silhouette& silhouette) const;
     StreamVertex stream_vertex(const SilhouetteVertex& v, const StreamVertex& constants) const;
 

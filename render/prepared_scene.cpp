@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <tuple>
 #include <utility>
 
@@ -32,6 +33,21 @@ SceneUnits find_units(const Scene& scene) {
     return {half_diagonal > 0 ? half_diagonal : 1.0, values.low, values.high};
 }
 
+double find_mean_chord(const TetMesh& mesh, double unit) {
+    double volume = 0.0, surface = 0.0;
+    for (CellId cell = 0; cell < mesh.tets.size(); ++cell) {
+        volume += std::abs(signed_volume(mesh, cell)) / (unit * unit * unit);
+        for (int face = 0; face < 4; ++face) {
+            const auto v = face_vertices(mesh.tets[cell], face);
+            const glm::dvec3 a = (mesh.points[v[1]] - mesh.points[v[0]]) / unit;
+            const glm::dvec3 b = (mesh.points[v[2]] - mesh.points[v[0]]) / unit;
+            surface += glm::length(glm::cross(a, b)) / 2;
+        }
+    }
+    const double chord = surface > 0.0 ? 4.0 * volume / surface : 0.0;
+    return chord > 0.0 ? chord : 1.0;  // flat cells only: nothing is drawn
+}
+
 std::vector<std::uint8_t> find_visible(const Scene& scene) {
     const TetMesh& mesh = *scene.mesh;
     std::vector<std::uint8_t> visible(mesh.tets.size());
@@ -54,7 +70,9 @@ std::vector<std::uint8_t> find_visible(const Scene& scene) {
 }  // namespace
 
 PreparedScene::PreparedScene(Scene scene)
-    : scene_(std::move(scene)), units_(find_units(scene_)), sorter_(*scene_.mesh), visible_(find_visible(scene_)) {}
+    : scene_(std::move(scene)), units_(find_units(scene_)), sorter_(*scene_.mesh),
+      mean_chord_(find_mean_chord(*scene_.mesh, units_.length)),
+      visible_(find_visible(scene_)) {}
 
 void PreparedScene::set_transfer(std::shared_ptr<const TransferFunction> transfer) {
     scene_.transfer = std::move(transfer);

@@ -31,6 +31,9 @@ public:
     const Scene& scene() const { return scene_; }
     const SceneUnits& units() const { return units_; }
     VisibilitySorter& sorter() { return sorter_; }
+    // Mean length of a segment over all cells and directions, 4·volume / surface by Cauchy's formula [SceneUnits::length],
+    // > 0.
+    double mean_chord() const { return mean_chord_; }
 
     // visible()[cell] is 0 for cells that add nothing to any picture: no emission and no extinction over the range of
     // their scalars, or a scalar that is not finite.
@@ -43,6 +46,7 @@ private:
     Scene scene_;
     SceneUnits units_;
     VisibilitySorter sorter_;
+    double mean_chord_;
     std::vector<std::uint8_t> visible_;
 };
 

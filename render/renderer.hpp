@@ -6,16 +6,19 @@
 #include <memory>
 #include <string>
 
+#include "classify/method.hpp"
 #include "project/camera.hpp"
 #include "render/image.hpp"
 #include "render/scene.hpp"
 #include "render/statistics.hpp"
+#include "render/target_format.hpp"
 
 namespace cellproj {
 
 // The speed–accuracy choices of one picture.
 struct Quality {
-    int table_size = 64;  // texels per axis of the pre-integration table, 2 .. 256
+    Method method = {};                           // how a segment becomes light
+    TargetFormat target = TargetFormat::rgba32f;  // what cells are blended in
 };
 
 // A renderer keeps what does not depend on the view (adjacency, table, visibility of cells) for the scene it drew last: a

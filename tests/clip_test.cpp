@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/predicates.hpp"
+#include "project/silhouette.hpp"
 #include "tests/support/tet_rays.hpp"
 
 namespace cellproj {

@@ -109,6 +109,18 @@ TEST_F(CommandLine, StatisticsHaveTheirKeys) {
     EXPECT_EQ(picture.at("backend"), "gl_osmesa");
 }
 
+TEST_F(CommandLine, MethodAndTargetAreChosenAndTold) {
+    const Outcome outcome =
+        run("render cube.vtk -o cube.png --size 20x20 --method shirley-tuchman --target rgba16f --stats stats.json");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    std::ifstream stream(path("stats.json"));
+    const auto picture = nlohmann::json::parse(stream).at("pictures").at(0);
+    EXPECT_EQ(picture.at("method"), "shirley-tuchman");
+    EXPECT_EQ(picture.at("target"), "rgba16f");
+    expect_refused("render cube.vtk -o x.png --target rgba32", {"--target", "\"rgba32f\""});
+    expect_refused("render cube.vtk -o x.png --method linear:half", {"--method", "pixels or vertices"});
+}
+
 TEST_F(CommandLine, OrbitAndCameraArraysNumberTheirPictures) {
     EXPECT_EQ(run("render cube.vtk -o orbit.png --size 20x20 --orbit 180 --frames 3").code, 0);
     for (const char* name : {"orbit_000.png", "orbit_001.png", "orbit_002.png"}) EXPECT_TRUE(fs::exists(path(name))) << name;

@@ -27,12 +27,12 @@ struct RenderOptions {
     bool tetrahedralize = false;
     SurfaceOptions surface;
     std::filesystem::path output, camera, transfer, stats;
-    std::string field, projection = "perspective", size = "512x512", cell_values = "constant";
+    std::string field, projection = "perspective", size = "512x512", cell_values = "constant",
+                method = to_string(Method{}), target = to_string(Quality{}.target);
     std::vector<double> from{-1, -2, 1}, up{0, 0, 1}, background{1, 1, 1};
     std::optional<double> nan;
     double orbit_degrees = 0;
     int frames = 1, bits = 8;
-    Quality quality;
 };
 
 glm::dvec3 vector3(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
@@ -173,6 +173,8 @@ ScalarField choose_field(const RenderOptions& options, const Input& input) {
 void render_pictures(const RenderOptions& options) {
     // Everything that can be refused without reading the mesh comes first.
     const ImageSize size = parse_size(options.size);
+    const Quality quality{.method = parse_method(options.method, "--method"),
+                          .target = parse_target_format(options.target, "--target")};
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -189,20 +191,21 @@ void render_pictures(const RenderOptions& options) {
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
-        renderer->prepare(scene, options.quality);
+        renderer->prepare(scene, quality);
     }
     run.once_ms.prepare = preparing.ms();
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         const std::filesystem::path file = numbered(options.output, i, cameras.size());
         const Progress progress("rendering " + file.string());
         Statistics statistics;
-        const Image image = renderer->render(scene, cameras[i], size, options.quality, &statistics);
+        const Image image = renderer->render(scene, cameras[i], size, quality, &statistics);
         const Stopwatch writing;
         write(image, file, options,
               {{"Software", "cellproj " CELLPROJ_VERSION},
                {"cellproj field", field->name},
                {"cellproj camera", to_json(cameras[i])},
                {"cellproj method", statistics.method},
+               {"cellproj target", statistics.target},
                {"cellproj order", statistics.order},
                {"cellproj backend", statistics.backend + ", " + statistics.backend_version}});
         statistics.ms.write = writing.ms();
@@ -242,8 +245,10 @@ void add_render_command(CLI::App& app) {
         ->expected(3)->delimiter(',')->check(CLI::Range(0.0, 1.0))->capture_default_str();
     command->add_option("--bits", options->bits, "Bits per channel of a PNG: 8 or 16")
         ->check(CLI::IsMember({8, 16}))->capture_default_str();
-    command->add_option("--table", options->quality.table_size, "Texels per axis of the pre-integration table")
-        ->check(CLI::Range(2, 256))->capture_default_str();
+    command->add_option("--method", options->method, "How a ray's piece in a cell becomes light: NAME[:CHOICE…] (classify/README.md)")
+        ->capture_default_str();
+    command->add_option("--target", options->target, "What cells are blended in: rgba8, rgba16, rgba16f or rgba32f")
+        ->capture_default_str();
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
     command->add_option("--nan", options->nan, "Draw values that are not finite (NaN) as this one; default: leave their cells out")
         ->check(finite_number());

@@ -4,9 +4,9 @@
 #include <glad/gl.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "classify/segment_method.hpp"
 #include "render/gl/shaders.hpp"
 
 namespace cellproj::gl {
@@ -17,18 +17,61 @@ namespace {
 // enough that projection and drawing overlap.
 constexpr std::size_t cells_per_chunk = 16384;
 
+// In scene units, where half the diagonal of the mesh's box is 1: no segment is longer than the diagonal.
+constexpr double longest_segment = 2.0;
+
 // The context must be current before the members that are OpenGL objects are made.
 OsmesaContext current(OsmesaContext context) {
     context.make_current();
     return context;
 }
 
+void set_blending() {
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // associated colours, back to front
+}
+
+// What shaders/cell.frag knows of a perspective camera.
+void set_camera(const Program& program, const CellStream& cells) {
+    const glm::dvec2 center = cells.transform().principal_point();
+    program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
+    program.set("inverse_near", static_cast<float>(1.0 / cells.near_depth()));
+    program.set("pixels_per_unit", static_cast<float>(cells.transform().pixels_per_unit()));
+}
+
+const char* blending_define(const Method& method) {
+    return method.blending == Blending::half ? "#define HALF_OPACITY\n" : "";
+}
+
+// Projects chunks of the order into batches, each of which is drawn while the next one is projected.
+template <class Vertex, class Project>
+void draw(TriangleStream& stream, std::span<const CellId> order, Statistics& statistics, Project project) {
+    Triangles<Vertex> batch;
+    for (std::size_t begin = 0; begin < order.size(); begin += cells_per_chunk) {
+        const Stopwatch projecting;
+        batch.clear();
+        project(order.subspan(begin, std::min(cells_per_chunk, order.size() - begin)), batch);
+        statistics.ms.project += projecting.ms();
+
+        const Stopwatch drawing;
+        stream.draw(batch);
+        statistics.ms.draw += drawing.ms();
+        statistics.counts.drawn += batch.drawn_cells;
+        statistics.counts.triangles += batch.indices.size() / 3;
+    }
+    const Stopwatch finish;
+    glFinish();
+    statistics.ms.draw += finish.ms();
+}
+
 }  // namespace
 
 GlRenderer::GlRenderer(OsmesaContext context)
     : context_(current(std::move(context))),
-      parallel_(shaders::cell_vert, shaders::preintegrated_frag, ""),
-      perspective_(shaders::cell_vert, shaders::preintegrated_frag, "#define PERSPECTIVE\n") {}
+      segments_(make_triangle_stream<StreamVertex>()),
+      lit_(make_triangle_stream<LitVertex>()) {}
 
 // The OpenGL objects below are deleted in their own context, whatever is current now.
 GlRenderer::~GlRenderer() { context_.make_current(); }
@@ -44,18 +87,30 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
-    if (same_transfer && table_ && table_->size() == quality.table_size) return;
+    if (same_transfer && (shader_ || lighting_) && method_ == quality.method) return;
 
-    table_.reset();  // no stale table behind a failure
     const SceneUnits& units = prepared_->units();
-    // No segment is longer than the diagonal of the box.
-    table_.emplace(*scene.transfer, TableDomain{units.scalar_low, units.scalar_high, 2 * units.length},
-                   quality.table_size);
-    // Emission and extinction per mesh unit become those per unit of length of the scene.
-    std::vector<float> texels(table_->texels().size());
-    std::transform(table_->texels().begin(), table_->texels().end(), texels.begin(),
-                   [&](float x) { return static_cast<float>(x * units.length); });
-    table_texture_ = Texture3d(quality.table_size, texels);
+    const TransferFunction transfer =
+        in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
+    lighting_.reset();
+    auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
+    const bool keeps = shader && same_cells && method_ == quality.method;
+    if (light_at_vertices(quality.method)) {
+        shader.reset();
+        lighting_ = make_vertex_lighting(quality.method, transfer, longest_segment, prepared_->mean_chord());
+    } else if (!keeps || !shader->update(transfer)) {
+        shader.reset();  // its memory first
+        shader = make_segment_shader(quality.method, transfer, longest_segment, prepared_->mean_chord());
+    }
+    shader_ = std::move(shader);
+    method_ = quality.method;
+}
+
+const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
+    const std::string key = defines + fragment;
+    const auto known = programs_.find(key);
+    if (known != programs_.end()) return known->second;
+    return programs_[key] = Program(vertex, fragment, defines);
 }
 
 Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality,
@@ -65,7 +120,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     validate(camera, "camera");
     validate(size, "size");
     prepare(scene, quality);
-    if (target_.size().width != size.width || target_.size().height != size.height) target_ = FloatTarget(size);
+    if (!target_.is(size, quality.target)) target_ = Target(size, quality.target);
     statistics.ms.plan = total.ms();
 
     const Stopwatch sort;
@@ -77,10 +132,8 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     const CellStream cells(*prepared_, camera, size);
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
-    const Program& program = cells.transform().perspective() ? perspective_ : parallel_;
-    set_uniforms(program, cells);
-    program.use();
-    draw(cells, order, statistics);
+    set_blending();
+    lighting_ ? draw_lit(cells, order, statistics) : draw_segments(cells, order, statistics);
 
     const Stopwatch read_back;
     Image image = target_.read();
@@ -91,7 +144,8 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.counts.cells = scene.mesh->tets.size();
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
     statistics.counts.unordered = order_report.unordered;
-    statistics.method = "preint3d:" + std::to_string(quality.table_size);
+    statistics.method = to_string(quality.method);
+    statistics.target = to_string(quality.target);
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
     statistics.order = "mpvo";
@@ -103,42 +157,22 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     return image;
 }
 
-void GlRenderer::set_uniforms(const Program& program, const CellStream& cells) const {
-    const ScreenTransform& transform = cells.transform();
-    const double length_scale = table_->length_scale() / prepared_->units().length;
-    const double longest = table_->domain().max_length / prepared_->units().length;
-    program.set("table_size", static_cast<float>(table_->size()));
-    program.set("inverse_length_scale", static_cast<float>(1.0 / length_scale));
-    program.set("inverse_log_range", static_cast<float>(1.0 / std::log2(1.0 + longest / length_scale)));
-    if (!transform.perspective()) return;
-    const glm::dvec2 center = transform.principal_point();
-    program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
-    program.set("inverse_near", static_cast<float>(1.0 / cells.near_depth()));
-    program.set("pixels_per_unit", static_cast<float>(transform.pixels_per_unit()));
+void GlRenderer::draw_segments(const CellStream& cells, std::span<const CellId> order, Statistics& statistics) {
+    const bool perspective = cells.transform().perspective();
+    const Program& segments =
+        program(shaders::cell_vert, shaders::cell_frag + shader_->source(),
+                std::string(perspective ? "#define PERSPECTIVE\n" : "") + blending_define(method_));
+    if (perspective) set_camera(segments, cells);
+    shader_->bind(segments);
+    segments.use();
+    draw<StreamVertex>(segments_, order, statistics,
+                       [&](std::span<const CellId> chunk, TriangleBatch& batch) { cells.project(chunk, batch); });
 }
 
-void GlRenderer::draw(const CellStream& cells, std::span<const CellId> order, Statistics& statistics) {
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // associated colours, back to front
-    glBindTextureUnit(0, table_texture_.name());
-    TriangleBatch batch;
-    for (std::size_t begin = 0; begin < order.size(); begin += cells_per_chunk) {
-        const Stopwatch project;
-        batch.clear();
-        cells.project(order.subspan(begin, std::min(cells_per_chunk, order.size() - begin)), batch);
-        statistics.ms.project += project.ms();
-
-        const Stopwatch draw;
-        stream_.draw(batch);
-        statistics.ms.draw += draw.ms();
-        statistics.counts.drawn += batch.drawn_cells;
-        statistics.counts.triangles += batch.indices.size() / 3;
-    }
-    const Stopwatch finish;
-    glFinish();
-    statistics.ms.draw += finish.ms();
+void GlRenderer::draw_lit(const CellStream& cells, std::span<const CellId> order, Statistics& statistics) {
+    program(shaders::lit_vert, shaders::lit_frag, blending_define(method_)).use();
+    draw<LitVertex>(lit_, order, statistics,
+                    [&](std::span<const CellId> chunk, LitBatch& batch) { cells.project(chunk, *lighting_, batch); });
 }
 
 }  // namespace cellproj::gl

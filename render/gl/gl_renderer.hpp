@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cell projection through OpenGL: RKE00 §2–3 on a float32 target. Projected triangles stream through a ring of mapped
+// Cell projection through OpenGL: RKE00 §2–3. Projected triangles stream through a ring of mapped
 // buffers in chunks, so that the projection of one chunk overlaps the drawing of those before it.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 
-#include "classify/preintegration_table.hpp"
+#include "classify/vertex_light.hpp"
 #include "render/cell_stream.hpp"
 #include "render/gl/objects.hpp"
 #include "render/gl/osmesa_context.hpp"
+#include "render/gl/segment_shader.hpp"
 #include "render/gl/triangle_stream.hpp"
 #include "render/prepared_scene.hpp"
 #include "render/renderer.hpp"
@@ -27,16 +31,19 @@ public:
                  Statistics* statistics) override;
 
 private:
-    void set_uniforms(const Program& program, const CellStream& cells) const;
-    void draw(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
+    const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
+    void draw_segments(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
+    void draw_lit(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
 
     OsmesaContext context_;
-    Program parallel_, perspective_;
-    TriangleStream stream_;
-    FloatTarget target_;
+    std::map<std::string, Program> programs_;  // by the text of the fragment shader and the defines
+    TriangleStream segments_, lit_;
+    Target target_;
     std::optional<PreparedScene> prepared_;
-    std::optional<PreintegrationTable> table_;
-    Texture3d table_texture_;
+    Method method_;
+    // Of method_, for the prepared scene: either light for each pixel or light at the vertices.
+    std::unique_ptr<SegmentShader> shader_;
+    std::unique_ptr<VertexLighting> lighting_;
 };
 
 }  // namespace cellproj::gl

@@ -40,6 +40,20 @@ GLuint compile(GLenum stage, const std::string& source, const std::string& defin
     fail("shader", "the driver to compile it", log.data());
 }
 
+GLenum internal_format(TargetFormat format) {
+    switch (format) {
+        case TargetFormat::rgba8:
+            return GL_RGBA8;
+        case TargetFormat::rgba16:
+            return GL_RGBA16;
+        case TargetFormat::rgba16f:
+            return GL_RGBA16F;
+        case TargetFormat::rgba32f:
+            return GL_RGBA32F;
+    }
+    return GL_NONE;
+}
+
 }  // namespace
 
 void delete_buffer(unsigned int name) { glDeleteBuffers(1, &name); }
@@ -59,22 +73,7 @@ MappedBuffer::MappedBuffer(std::size_t bytes) {
     memory_ = {static_cast<std::byte*>(memory), bytes};
 }
 
-Texture3d::Texture3d(int size, std::span<const float> texels) {
-    assert(texels.size() == 4 * static_cast<std::size_t>(size) * static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-    GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_3D, 1, &name);
-    texture_ = Object<delete_texture>(name);
-    glTextureStorage3D(name, 1, GL_RGBA32F, size, size, size);
-    glTextureSubImage3D(name, 0, 0, 0, 0, size, size, size, GL_RGBA, GL_FLOAT, texels.data());
-    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
-        glTextureParameteri(name, axis, GL_CLAMP_TO_EDGE);
-    }
-    check_errors("uploading a 3D table");
-}
-
-FloatTarget::FloatTarget(ImageSize size) : size_(size) {
+Target::Target(ImageSize size, TargetFormat format) : size_(size), format_(format) {
     GLint largest = 0, largest_viewport[2]{};
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     glGetIntegerv(GL_MAX_VIEWPORT_DIMS, largest_viewport);
@@ -86,23 +85,23 @@ FloatTarget::FloatTarget(ImageSize size) : size_(size) {
     GLuint name = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &name);
     color_ = Object<delete_texture>(name);
-    glTextureStorage2D(name, 1, GL_RGBA32F, size.width, size.height);
+    glTextureStorage2D(name, 1, internal_format(format), size.width, size.height);
     glCreateFramebuffers(1, &name);
     framebuffer_ = Object<delete_framebuffer>(name);
     glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, color_.name(), 0);
     if (glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-        fail("framebuffer", "RGBA32F to be drawable", "an incomplete framebuffer");
+        fail("framebuffer", to_string(format) + " to be drawable", "an incomplete framebuffer");
     }
 }
 
-void FloatTarget::clear_and_bind() const {
+void Target::clear_and_bind() const {
     constexpr std::array<GLfloat, 4> nothing{0, 0, 0, 0};
     glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, nothing.data());
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, size_.width, size_.height);
 }
 
-Image FloatTarget::read() const {
+Image Target::read() const {
     Image image(size_.width, size_.height);
     static_assert(sizeof(glm::vec4) == 4 * sizeof(GLfloat));
     glGetTextureImage(color_.name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(image.pixels.size() * sizeof(glm::vec4)),
@@ -142,6 +141,10 @@ void Program::set(const char* uniform, float value) const {
 
 void Program::set(const char* uniform, float x, float y) const {
     glProgramUniform2f(program_.name(), location(uniform), x, y);
+}
+
+void Program::set(const char* uniform, const glm::vec4& value) const {
+    glProgramUniform4f(program_.name(), location(uniform), value.x, value.y, value.z, value.w);
 }
 
 void check_errors(const char* where) {

@@ -9,8 +9,11 @@
 #include <string>
 #include <utility>
 
+#include <glm/vec4.hpp>
+
 #include "project/camera.hpp"
 #include "render/image.hpp"
+#include "render/target_format.hpp"
 
 namespace cellproj::gl {
 
@@ -54,31 +57,22 @@ private:
     std::span<std::byte> memory_;
 };
 
-// size³ texels RGBA float32, linear filter, clamped to the edge.
-class Texture3d {
+// A colour buffer of the size of a picture.
+class Target {
 public:
-    Texture3d() = default;
-    Texture3d(int size, std::span<const float> texels);
-
-    unsigned int name() const { return texture_.name(); }
-
-private:
-    Object<delete_texture> texture_;
-};
-
-// A colour buffer RGBA float32 of the size of a picture.
-class FloatTarget {
-public:
-    FloatTarget() = default;
+    Target() = default;
     // Throws Error (option) when the driver cannot draw that large.
-    explicit FloatTarget(ImageSize size);
+    Target(ImageSize size, TargetFormat format);
 
-    ImageSize size() const { return size_; }
+    bool is(ImageSize size, TargetFormat format) const {
+        return size_.width == size.width && size_.height == size.height && format_ == format;
+    }
     void clear_and_bind() const;  // transparent black; viewport set
     Image read() const;           // waits for the drawing to end
 
 private:
     ImageSize size_{0, 0};
+    TargetFormat format_ = TargetFormat::rgba32f;
     Object<delete_texture> color_;
     Object<delete_framebuffer> framebuffer_;
 };
@@ -93,6 +87,7 @@ public:
     void use() const;
     void set(const char* uniform, float value) const;  // asserts that the uniform exists
     void set(const char* uniform, float x, float y) const;
+    void set(const char* uniform, const glm::vec4& value) const;
 
 private:
     int location(const char* uniform) const;

@@ -11,48 +11,52 @@ namespace cellproj::gl {
 
 namespace {
 
-// The attribute locations of shaders/cell.vert.
-enum Attribute : GLuint { position = 0, base = 1, ridges = 2, cell = 3 };
-
 constexpr GLuint vertex_binding = 0;
+
+constexpr std::array<VertexAttribute, 4> stream_attributes{{{0, 2, offsetof(StreamVertex, x)},
+                                                            {1, 2, offsetof(StreamVertex, base_depth)},
+                                                            {2, 3, offsetof(StreamVertex, ridges)},
+                                                            {3, 4, offsetof(StreamVertex, scalar_slope)}}};
+constexpr std::array<VertexAttribute, 4> lit_attributes{{{0, 2, offsetof(LitVertex, x)},
+                                                         {1, 1, offsetof(LitVertex, share)},
+                                                         {2, 3, offsetof(LitVertex, color)},
+                                                         {3, 3, offsetof(LitVertex, weight)}}};
 
 }  // namespace
 
-TriangleStream::TriangleStream() {
+std::span<const VertexAttribute> vertex_attributes(const StreamVertex*) { return stream_attributes; }
+std::span<const VertexAttribute> vertex_attributes(const LitVertex*) { return lit_attributes; }
+
+TriangleStream::TriangleStream(std::size_t vertex_bytes, std::span<const VertexAttribute> attributes)
+    : vertex_bytes_(vertex_bytes) {
     GLuint name = 0;
     glCreateVertexArrays(1, &name);
     layout_ = Object<delete_vertex_array>(name);
-    const auto attribute = [&](Attribute location, GLint components, std::size_t offset) {
-        glEnableVertexArrayAttrib(name, location);
-        glVertexArrayAttribFormat(name, location, components, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
-        glVertexArrayAttribBinding(name, location, vertex_binding);
-    };
-    attribute(position, 2, offsetof(StreamVertex, x));
-    attribute(base, 2, offsetof(StreamVertex, base_depth));
-    attribute(ridges, 3, offsetof(StreamVertex, ridges));
-    attribute(cell, 4, offsetof(StreamVertex, scalar_slope));
+    for (const VertexAttribute& attribute : attributes) {
+        glEnableVertexArrayAttrib(name, attribute.location);
+        glVertexArrayAttribFormat(name, attribute.location, attribute.components, GL_FLOAT, GL_FALSE,
+                                  static_cast<GLuint>(attribute.offset));
+        glVertexArrayAttribBinding(name, attribute.location, vertex_binding);
+    }
 }
 
 TriangleStream::~TriangleStream() {
     for (void* fence : in_use_) glDeleteSync(static_cast<GLsync>(fence));
 }
 
-void TriangleStream::draw(const TriangleBatch& batch) {
-    if (batch.indices.empty()) return;
-    if (batch.vertices.size() > slot_vertices_ || batch.indices.size() > slot_indices_) {
-        grow(batch.vertices.size(), batch.indices.size());
-    }
+void TriangleStream::draw(std::span<const std::byte> vertices, std::span<const std::uint32_t> indices) {
+    if (indices.empty()) return;
+    const std::size_t vertex_count = vertices.size() / vertex_bytes_;
+    if (vertex_count > slot_vertices_ || indices.size() > slot_indices_) grow(vertex_count, indices.size());
     const std::size_t slot = next_;
     next_ = (next_ + 1) % slots;
     wait(slot);
     const std::size_t first_vertex = slot * slot_vertices_;
     const std::size_t first_index = slot * slot_indices_;
-    std::memcpy(vertices_->memory().data() + first_vertex * sizeof(StreamVertex), batch.vertices.data(),
-                batch.vertices.size() * sizeof(StreamVertex));
-    std::memcpy(indices_->memory().data() + first_index * sizeof(std::uint32_t), batch.indices.data(),
-                batch.indices.size() * sizeof(std::uint32_t));
+    std::memcpy(vertices_->memory().data() + first_vertex * vertex_bytes_, vertices.data(), vertices.size());
+    std::memcpy(indices_->memory().data() + first_index * sizeof(std::uint32_t), indices.data(), indices.size_bytes());
     glBindVertexArray(layout_.name());
-    glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(batch.indices.size()), GL_UNSIGNED_INT,
+    glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(indices.size()), GL_UNSIGNED_INT,
                              reinterpret_cast<const void*>(first_index * sizeof(std::uint32_t)),
                              static_cast<GLint>(first_vertex));
     in_use_[slot] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -63,9 +67,10 @@ void TriangleStream::grow(std::size_t vertices, std::size_t indices) {
     for (std::size_t slot = 0; slot < slots; ++slot) wait(slot);
     slot_vertices_ = std::max(slot_vertices_, vertices + vertices / 4);
     slot_indices_ = std::max(slot_indices_, indices + indices / 4);
-    vertices_ = std::make_unique<MappedBuffer>(slots * slot_vertices_ * sizeof(StreamVertex));
+    vertices_ = std::make_unique<MappedBuffer>(slots * slot_vertices_ * vertex_bytes_);
     indices_ = std::make_unique<MappedBuffer>(slots * slot_indices_ * sizeof(std::uint32_t));
-    glVertexArrayVertexBuffer(layout_.name(), vertex_binding, vertices_->name(), 0, sizeof(StreamVertex));
+    glVertexArrayVertexBuffer(layout_.name(), vertex_binding, vertices_->name(), 0,
+                              static_cast<GLsizei>(vertex_bytes_));
     glVertexArrayElementBuffer(layout_.name(), indices_->name());
 }
 

@@ -1,24 +1,32 @@
 #version 450 core
 // SPDX-License-Identifier: BSD-3-Clause
-// One ray segment inside a cell, from the pre-integration table (classify/preintegration_table.hpp).
+// One ray segment inside a cell. The method's file, behind this one, says what light it gives.
 in vec2 v_base;
 in vec3 v_ridges;
 flat in vec4 v_cell;
 
-layout(binding = 0) uniform sampler3D table;  // (s_f, s_b, u(l)) -> effective emission g, mean extinction
-uniform float table_size;                     // texels per axis
-uniform float inverse_length_scale;           // 1 / l0
-uniform float inverse_log_range;              // 1 / log2(1 + l_max / l0)
-uniform vec2 principal_point;                 // pixels
-uniform float pixels_per_unit;                // perspective: pixels per length at depth 1
-uniform float inverse_near;                   // perspective: 1 / depth of the near plane
+uniform vec2 principal_point;   // pixels
+uniform float pixels_per_unit;  // perspective: pixels per length at depth 1
+uniform float inverse_near;     // perspective: 1 / depth of the near plane
 
 layout(location = 0) out vec4 light;  // associated colour, opacity
+
+// Scalars 0..1, length >= 0, all in scene units.
+vec4 light_of_segment(float s_front, float s_back, float segment);
 
 // (1 - exp(-d)) / d. Below 1/16 the difference would lose digits; the next term of the series is d^4 / 120 < 2e-7.
 float attenuation_mean(float d) {
     float series = 1.0 - d * (0.5 - d * (1.0 / 6.0 - d * (1.0 / 24.0)));
     return d < 0.0625 ? series : (1.0 - exp(-d)) / d;
+}
+
+// 1 - exp(-d), without rounding above 1.
+float opacity_of_depth(float d) { return min(d * attenuation_mean(d), 1.0); }
+
+// Of a segment with the same emission and extinction [per length] everywhere.
+vec4 homogeneous_light(vec3 emission, float extinction, float segment) {
+    float depth = extinction * segment;
+    return vec4(emission * segment * attenuation_mean(depth), opacity_of_depth(depth));
 }
 
 void main() {
@@ -42,11 +50,8 @@ void main() {
     // Pixel centres just outside a sliver extrapolate; no segment leaves the cell's own range.
     float segment = min(depth_difference, abs(v_cell.w)) * ray;
     s = clamp(s, v_cell.y, v_cell.z);
-
-    float u = log2(1.0 + segment * inverse_length_scale) * inverse_log_range;
-    vec3 texel = (vec3(s, u) * (table_size - 1.0) + 0.5) / table_size;
-    vec4 emission_extinction = texture(table, texel);
-    float depth = emission_extinction.a * segment;  // optical depth
-    float mean = attenuation_mean(depth);
-    light = vec4(emission_extinction.rgb * segment * mean, depth * mean);
+    light = light_of_segment(s.x, s.y, segment);
+#ifdef HALF_OPACITY  // three passes in one: classify/half_opacity.hpp
+    light *= vec4(vec3(1.0 - 0.5 * light.a), 1.0 - 0.25 * light.a);
+#endif
 }

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/gl/textures.hpp"
+
+#include <glad/gl.h>
+
+#include <cassert>
+
+#include "classify/table_encoding.hpp"
+
+namespace cellproj::gl {
+
+namespace {
+
+GLenum internal_format(TableStorage storage) {
+    switch (storage) {
+        case TableStorage::uint8: return GL_RGBA8;
+        case TableStorage::float16: return GL_RGBA16F;
+        case TableStorage::float32: break;
+    }
+    return GL_RGBA32F;
+}
+
+GLuint make_table(GLenum target) {
+    GLuint name = 0;
+    glCreateTextures(target, 1, &name);
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+        glTextureParameteri(name, axis, GL_CLAMP_TO_EDGE);
+    }
+    return name;
+}
+
+}  // namespace
+
+Texture Texture::table_2d(int size, TableStorage storage, std::span<const float> texels) {
+    assert(texels.size() == 4 * static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    const GLuint name = make_table(GL_TEXTURE_2D);
+    Texture texture;
+    texture.texture_ = Object<delete_texture>(name);
+    glTextureStorage2D(name, 1, internal_format(storage), size, size);
+    glTextureSubImage2D(name, 0, 0, 0, size, size, GL_RGBA, GL_FLOAT, texels.data());
+    texture.bytes_ = texels.size() / 4 * bytes_per_texel(storage);
+    check_errors("uploading a 2D table");
+    return texture;
+}
+
+Texture Texture::table_3d(int size, TableStorage storage, std::span<const float> texels) {
+    assert(texels.size() == 4 * static_cast<std::size_t>(size) * static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    const GLuint name = make_table(GL_TEXTURE_3D);
+    Texture texture;
+    texture.texture_ = Object<delete_texture>(name);
+    glTextureStorage3D(name, 1, internal_format(storage), size, size, size);
+    glTextureSubImage3D(name, 0, 0, 0, 0, size, size, size, GL_RGBA, GL_FLOAT, texels.data());
+    texture.bytes_ = texels.size() / 4 * bytes_per_texel(storage);
+    check_errors("uploading a 3D table");
+    return texture;
+}
+
+Texture Texture::list(std::span<const float> texels) {
+    assert(!texels.empty() && texels.size() % 4 == 0);
+    Texture texture;
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    texture.buffer_ = Object<delete_buffer>(name);
+    glNamedBufferStorage(name, static_cast<GLsizeiptr>(texels.size_bytes()), texels.data(), 0);
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
+    texture.texture_ = Object<delete_texture>(name);
+    glTextureBuffer(name, GL_RGBA32F, texture.buffer_.name());
+    texture.bytes_ = texels.size_bytes();
+    check_errors("uploading a list");
+    return texture;
+}
+
+void Texture::bind(unsigned int unit) const { glBindTextureUnit(unit, texture_.name()); }
+
+}  // namespace cellproj::gl

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tables as textures, read-only after they are made.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "classify/method.hpp"
+#include "render/gl/objects.hpp"
+
+namespace cellproj::gl {
+
+class Texture {
+public:
+    Texture() = default;
+
+    // Texels RGBA, the first axis fastest; linear filter, clamped to the edge. `uint8` stores 0..1.
+    static Texture table_2d(int size, TableStorage storage, std::span<const float> texels);
+    static Texture table_3d(int size, TableStorage storage, std::span<const float> texels);
+    // Texels RGBA float32 to be fetched by index (samplerBuffer), nothing between them.
+    static Texture list(std::span<const float> texels);
+
+    void bind(unsigned int unit) const;
+    std::size_t bytes() const { return bytes_; }
+
+private:
+    Object<delete_texture> texture_;
+    Object<delete_buffer> buffer_;  // of a list
+    std::size_t bytes_ = 0;
+};
+
+}  // namespace cellproj::gl
