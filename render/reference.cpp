@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/reference.hpp"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+
+#include <glm/common.hpp>
+
+#include "mesh/error.hpp"
+#include "render/ray_light.hpp"
+
+namespace cellproj {
+
+namespace {
+
+using Range = oneapi::tbb::blocked_range<std::size_t>;
+
+void check_field(const Scene& scene) {
+    const ScalarField& field = *scene.field;
+    const std::size_t rows = field.location == FieldLocation::points ? scene.mesh->points.size() : scene.mesh->tets.size();
+    if (field.values.size() != rows) {
+        throw Error({ErrorKind::data, "field \"" + field.name + "\"", std::to_string(rows) + " values",
+                     std::to_string(field.values.size()), "choose a field of this mesh"});
+    }
+    if (std::none_of(field.values.begin(), field.values.end(), [](double s) { return std::isfinite(s); })) {
+        throw Error({ErrorKind::data, "field \"" + field.name + "\"", "finite values", "none", "choose another field"});
+    }
+}
+
+void check_pixel(PixelId pixel, int width, int height) {
+    if (pixel.x >= 0 && pixel.x < width && pixel.y >= 0 && pixel.y < height) return;
+    throw Error({ErrorKind::option, "pixel", "one of a picture of " + std::to_string(width) + "x" + std::to_string(height) + " pixels",
+                 "(" + std::to_string(pixel.x) + ", " + std::to_string(pixel.y) + ")", "give column and row, from 0"});
+}
+
+glm::dvec2 center(PixelId pixel) { return {pixel.x + 0.5, pixel.y + 0.5}; }
+
+double interpolate(const std::array<double, 4>& values, const std::array<double, 4>& weights) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) sum += values[i] * weights[i];
+    // Where all are equal, or nearly, rounding must not make another value of them.
+    return std::clamp(sum, std::ranges::min(values), std::ranges::max(values));
+}
+
+// A part of the ray with its scalars.
+struct Segment {
+    double enter, leave;
+    ScalarEnds scalars;
+
+    double at(double t) const {
+        if (t <= enter) return scalars.front;
+        if (t >= leave) return scalars.back;
+        const double share = (t - enter) / (leave - enter);
+        return (1.0 - share) * scalars.front + share * scalars.back;
+    }
+};
+
+// By ascending `enter`.
+std::vector<Segment> segments(const Scene& scene, const std::vector<Crossing>& crossings) {
+    std::vector<Segment> result;
+    result.reserve(crossings.size());
+    for (const Crossing& crossing : crossings) {
+        std::array<double, 4> values;
+        for (int corner = 0; corner < 4; ++corner) values[static_cast<std::size_t>(corner)] = scene.field->at(*scene.mesh, crossing.cell, corner);
+        if (!std::ranges::all_of(values, [](double s) { return std::isfinite(s); })) continue;
+        result.push_back({crossing.enter, crossing.leave, {interpolate(values, crossing.at_enter), interpolate(values, crossing.at_leave)}});
+    }
+    std::sort(result.begin(), result.end(), [](const Segment& a, const Segment& b) { return a.enter < b.enter; });
+    return result;
+}
+
+// Position along a Morton curve: the bits of x and y in turn.
+std::uint64_t morton(PixelId pixel) {
+    std::uint64_t code = 0;
+    for (int bit = 0; bit < 16; ++bit) {
+        code |= (static_cast<std::uint64_t>(pixel.x) >> bit & 1U) << (2 * bit) | (static_cast<std::uint64_t>(pixel.y) >> bit & 1U) << (2 * bit + 1);
+    }
+    return code;
+}
+
+// One pixel at random from each block of k by k.
+std::vector<PixelId> candidates(ImageSize size, std::mt19937_64& random) {
+    const double millions = static_cast<double>(size.width) * size.height / (1 << 20);
+    const int k = std::max(1, static_cast<int>(std::ceil(std::sqrt(millions))));
+    std::vector<PixelId> pixels;
+    for (int y = 0; y < size.height; y += k) {
+        for (int x = 0; x < size.width; x += k) {
+            const auto offset = [&](int room) { return static_cast<int>(random() % static_cast<std::uint64_t>(std::min(k, room))); };
+            const int dx = offset(size.width - x), dy = offset(size.height - y);
+            pixels.push_back({x + dx, y + dy});
+        }
+    }
+    return pixels;
+}
+
+// Distances of the values of one kind, collected pixel by pixel.
+class Errors {
+public:
+    void add(std::span<const double> channels) {
+        double worst = 0;
+        for (const double e : channels) {
+            squares_ += e * e;
+            worst = std::max(worst, e);
+        }
+        values_ += channels.size();
+        worst_.push_back(worst);
+    }
+
+    ErrorMeasure measure() {
+        if (worst_.empty()) return {};
+        std::sort(worst_.begin(), worst_.end());
+        const std::size_t rank = (99 * worst_.size() + 99) / 100;  // nearest rank, 1-based
+        return {std::sqrt(squares_ / static_cast<double>(values_)), worst_[rank - 1], worst_.back()};
+    }
+
+private:
+    double squares_ = 0;
+    std::size_t values_ = 0;
+    std::vector<double> worst_;
+};
+
+double outside(double value, double low, double high) {
+    return std::isfinite(value) ? std::max({0.0, low - value, value - high}) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene_(std::move(scene)), index_(std::move(index)) {
+    assert(scene_.mesh && scene_.field && scene_.transfer);
+    check_field(scene_);
+    if (!index_) index_ = std::make_shared<RayIndex>(*scene_.mesh);
+}
+
+Light Reference::light(const ViewRay& ray) const {
+    const std::vector<Segment> along = segments(scene_, index_->cells_along(ray));
+    std::vector<double> bounds;
+    bounds.reserve(2 * along.size());
+    for (const Segment& segment : along) bounds.insert(bounds.end(), {segment.enter, segment.leave});
+    std::sort(bounds.begin(), bounds.end());
+    bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
+
+    // Between two neighbouring bounds the same segments are there.
+    RayLight light(*scene_.transfer);
+    std::vector<Segment> here;
+    std::vector<ScalarEnds> media;
+    auto next = along.begin();
+    for (std::size_t i = 0; i + 1 < bounds.size() && !light.opaque(); ++i) {
+        const double begin = bounds[i], end = bounds[i + 1];
+        std::erase_if(here, [&](const Segment& segment) { return segment.leave <= begin; });
+        while (next != along.end() && next->enter <= begin) here.push_back(*next++);
+        media.clear();
+        for (const Segment& segment : here) media.push_back({segment.at(begin), segment.at(end)});
+        light.add(media, end - begin);
+    }
+    return light.light();
+}
+
+std::vector<PixelTruth> Reference::pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels, double slack) const {
+    validate(camera, "camera");
+    validate(size, "size");
+    for (const PixelId& pixel : pixels) check_pixel(pixel, size.width, size.height);
+    std::vector<PixelTruth> truths(pixels.size());
+    const auto look = [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            PixelTruth& truth = truths[i];
+            truth.pixel = pixels[i];
+            truth.light = light(index_->ray(camera, size, center(pixels[i])));
+            truth.low = truth.high = truth.light;
+            if (!(slack > 0)) continue;
+            for (const glm::dvec2& offset : {glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
+                const Light beside = light(index_->ray(camera, size, center(pixels[i]) + slack * offset));
+                truth.low = {glm::min(truth.low.color, beside.color), std::min(truth.low.opacity, beside.opacity)};
+                truth.high = {glm::max(truth.high.color, beside.color), std::max(truth.high.opacity, beside.opacity)};
+            }
+        }
+    };
+    oneapi::tbb::parallel_for(Range(0, pixels.size(), 64), look);
+    return truths;
+}
+
+std::vector<PixelTruth> Reference::picture(const Camera& camera, ImageSize size, double slack) const {
+    validate(size, "size");
+    return pixels(camera, size, all_pixels(size), slack);
+}
+
+std::vector<PixelId> Reference::sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed) const {
+    validate(camera, "camera");
+    validate(size, "size");
+    std::mt19937_64 random(seed);
+    const std::vector<PixelId> tried = candidates(size, random);
+    std::vector<std::uint8_t> meets(tried.size());
+    oneapi::tbb::parallel_for(Range(0, tried.size(), 64), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) meets[i] = index_->meets(index_->ray(camera, size, center(tried[i])));
+    });
+    std::vector<PixelId> seen;
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+        if (meets[i]) seen.push_back(tried[i]);
+    }
+    std::sort(seen.begin(), seen.end(), [](PixelId a, PixelId b) { return morton(a) < morton(b); });
+    count = std::min(count, seen.size());
+    std::vector<PixelId> drawn;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t begin = seen.size() * i / count, end = seen.size() * (i + 1) / count;
+        drawn.push_back(seen[begin + random() % (end - begin)]);
+    }
+    std::sort(drawn.begin(), drawn.end(), [](PixelId a, PixelId b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); });
+    return drawn;
+}
+
+std::vector<PixelTruth> reference_pixels(const Scene& scene, const Camera& camera, ImageSize size, std::span<const PixelId> pixels) {
+    return Reference(scene).pixels(camera, size, pixels);
+}
+
+std::vector<PixelId> all_pixels(ImageSize size) {
+    std::vector<PixelId> pixels;
+    pixels.reserve(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) pixels.push_back({x, y});
+    }
+    return pixels;
+}
+
+Image to_image(std::span<const PixelTruth> truths, ImageSize size) {
+    Image image(size.width, size.height);
+    for (const PixelTruth& truth : truths) {
+        check_pixel(truth.pixel, size.width, size.height);
+        image.at(truth.pixel.x, truth.pixel.y) = glm::vec4(truth.light.color, truth.light.opacity);
+    }
+    return image;
+}
+
+ImageError compare(const Image& image, std::span<const PixelTruth> truths) {
+    Errors color, opacity;
+    for (const PixelTruth& truth : truths) {
+        check_pixel(truth.pixel, image.width, image.height);
+        const glm::vec4& found = image.at(truth.pixel.x, truth.pixel.y);
+        std::array<double, 3> channels;
+        for (int k = 0; k < 3; ++k) channels[static_cast<std::size_t>(k)] = outside(found[k], truth.low.color[k], truth.high.color[k]);
+        color.add(channels);
+        opacity.add(std::array{outside(found.w, truth.low.opacity, truth.high.opacity)});
+    }
+    return {truths.size(), color.measure(), opacity.measure()};
+}
+
+}  // namespace cellproj

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The judge: what the pixels of a scene should be. RKE00 Eq. 1 in float64 along the ray through the pixel, over every cell that
+// the ray crosses, found one by one (ray_index.hpp) and integrated to convergence (ray_light.hpp). It shares with the renderers only the
+// camera's ray and the nodes of the transfer function; it knows no order but the ray's, so that cyclic and non-convex meshes are like any other.
+//
+// What counts:
+// - Fields on points are linear in a cell, fields on cells constant. Cells that touch a value that is not finite are left out.
+// - Where cells overlap, their media are superposed: extinction and emission add up (ray_light.hpp).
+// - Perspective rays begin at the eye, parallel ones at infinity. (The renderers cut at their near plane, a thousandth
+//   of the distance to the camera's center.)
+// - A ray along a face, an edge or through a vertex is decided as one beside it, the same for all cells (ray_index.hpp).
+//
+// Accuracy: 1e-9 absolute for colours within 0..1, as long as 1e-15 times the size of the mesh, or times the distance of the eye if
+// that is larger, is 1e-10 of the length in which the picture changes. Tests: reference_test, ray_index_test, ray_light_test.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "project/camera.hpp"
+#include "render/image.hpp"
+#include "render/ray_index.hpp"
+#include "render/scene.hpp"
+
+namespace cellproj {
+
+struct PixelId {
+    int x, y;  // column and row, from the top left
+
+    bool operator==(const PixelId&) const = default;
+};
+
+// What a pixel should be: the light at its centre, and the range of each channel over the positions that a rasterizer may take for it.
+// Both ends are the centre's light unless a slack was asked for.
+struct PixelTruth {
+    PixelId pixel;
+    Light light;      // associated
+    Light low, high;  // channel by channel
+};
+
+// Keeps the index over a scene's mesh for any number of pictures. Immutable: any number of threads may ask at once.
+class Reference {
+public:
+    // Throws Error (data) when the mesh is refused by `validate`, or the field does not fit it or has no finite value. `index`: that of the
+    // same mesh, when there is one already.
+    explicit Reference(Scene scene, std::shared_ptr<const RayIndex> index = nullptr);
+
+    const RayIndex& index() const { return *index_; }
+    const std::shared_ptr<const RayIndex>& shared_index() const { return index_; }
+
+    // The light along one ray.
+    Light light(const ViewRay& ray) const;
+
+    // The truth of these pixels, in their order. Rasterizers move points to a grid of 1/256 of a pixel; their picture is one of a mesh moved
+    // by at most 1/512. With `slack` > 0 [pixels], low and high also take in the light at the four positions (±slack,
+    // ±slack) from the centre, which tells a silhouette that has moved by so little from an error. Costs five rays instead of one.
+    // Parallel over pixels, the same for any number of threads. Throws Error (option) for an unusable camera or size or a
+    // pixel outside the picture.
+    std::vector<PixelTruth> pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels, double slack = 0) const;
+    // The whole picture, row by row.
+    std::vector<PixelTruth> picture(const Camera& camera, ImageSize size, double slack = 0) const;
+
+    // `count` different pixels that see the mesh, spread evenly: the pixels that do (of pictures above a million pixels, one in each block of
+    // k by k, k² the number of pixels in millions) are cut into `count` runs along a Morton curve, and one is drawn from each. All of
+    // them when there are fewer. Ascending by row, then column; depends on the seed alone. Throws as `pixels`.
+    std::vector<PixelId> sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed = 1) const;
+
+private:
+    Scene scene_;
+    std::shared_ptr<const RayIndex> index_;
+};
+
+// For a single picture of a scene.
+std::vector<PixelTruth> reference_pixels(const Scene& scene, const Camera& camera, ImageSize size, std::span<const PixelId> pixels);
+
+// Every pixel of a picture, row by row.
+std::vector<PixelId> all_pixels(ImageSize size);
+
+// The truths as a picture: 0 where there is none.
+Image to_image(std::span<const PixelTruth> truths, ImageSize size);
+
+// How far values lie outside of low..high, absolute.
+struct ErrorMeasure {
+    double rms = 0;           // root of the mean square, over all channels of all pixels
+    double percentile_99 = 0;  // the smallest number that 99 % of the pixels do not exceed; a pixel counts with its worst channel
+    double maximum = 0;
+};
+
+struct ImageError {
+    std::size_t pixels = 0;  // compared
+    ErrorMeasure color;      // R, G and B
+    ErrorMeasure opacity;
+};
+
+// The picture against the truth, at the truth's pixels. A value that is not finite is an infinite error. Throws Error
+// (option) when a pixel lies outside the picture. No pixels: all 0.
+ImageError compare(const Image& image, std::span<const PixelTruth> truths);
+
+}  // namespace cellproj
