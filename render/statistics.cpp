@@ -36,6 +36,7 @@ Json picture_json(const Statistics& picture) {
               {"unordered", counts.unordered},
               {"order_violations", counts.order_violations}}},
             {"method", picture.method},
+            {"table_bytes", picture.table_bytes},
             {"backend", picture.backend},
             {"backend_version", picture.backend_version},
             {"order", picture.order},

@@ -37,6 +37,7 @@ struct Statistics {
         std::size_t order_violations = 0;  // pairs of face neighbours drawn the wrong way round
     } counts;
     std::string method;           // of integration: "preint3d:64"
+    std::size_t table_bytes = 0;  // memory of its tables
     std::string backend;          // "gl_osmesa"
     std::string backend_version;  // what the driver says of itself
     std::string order;            // method of sorting: "mpvo"

@@ -97,6 +97,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
     statistics.counts.unordered = order_report.unordered;
     statistics.method = to_string(quality.method);
+    statistics.table_bytes = shader_->table_bytes();
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
     statistics.order = "mpvo";
