@@ -51,6 +51,8 @@ std::size_t count_non_finite(const Image& image);
 // as string attributes. Both throw Error (file) when the file cannot be written completely; the image has at least one
 // pixel.
 void write_png(const Image& image, const std::filesystem::path& file, const PngOptions& options = {});
+// The same bytes in memory.
+std::string encode_png(const Image& image, const PngOptions& options = {});
 void write_exr(const Image& image, const std::filesystem::path& file,
                const std::map<std::string, std::string>& text = {});
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <csetjmp>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -62,8 +64,11 @@ std::vector<png_text> text_chunks(const std::map<std::string, std::string>& text
     return chunks;
 }
 
+// Takes bytes; false when it cannot.
+using Sink = std::function<bool(const png_byte* data, std::size_t bytes)>;
+
 void png_write_bytes(png_structp png, png_bytep data, std::size_t bytes) {
-    if (!static_cast<OutputFile*>(png_get_io_ptr(png))->write(data, bytes)) png_error(png, "cannot write");
+    if (!(*static_cast<const Sink*>(png_get_io_ptr(png)))(data, bytes)) png_error(png, "cannot write");
 }
 
 void png_flush_nothing(png_structp) {}
@@ -107,6 +112,27 @@ bool encode(png_structp png, png_infop info, const Image& image, const PngOption
     return true;
 }
 
+// What libpng says when it fails, nothing when the sink has taken the whole picture.
+std::optional<std::string> encode_to(Sink sink, const Image& image, const PngOptions& options) {
+    assert(image.width > 0 && image.height > 0 && (options.bits == 8 || options.bits == 16));
+    std::string error = "out of memory";
+    const PngWriter writer(error);
+    std::vector<png_byte> row(static_cast<std::size_t>(image.width) * 3 * static_cast<std::size_t>(options.bits / 8));
+    const std::vector<png_text> chunks = text_chunks(options.text);
+    if (!writer.info) return error;
+    png_set_write_fn(writer.png, &sink, png_write_bytes, png_flush_nothing);
+    if (!encode(writer.png, writer.info, image, options, chunks, row)) return error;
+    return std::nullopt;
+}
+
+[[noreturn]] void throw_refused(const std::string& place, std::string found) {
+    throw Error({.kind = ErrorKind::file,
+                 .place = place,
+                 .expected = "a picture that libpng can write",
+                 .found = std::move(found),
+                 .advice = "write OpenEXR (.exr) instead"});
+}
+
 }  // namespace
 
 void require_writable_image(const std::filesystem::path& file) {
@@ -126,24 +152,22 @@ std::size_t count_non_finite(const Image& image) {
 }
 
 void write_png(const Image& image, const std::filesystem::path& file, const PngOptions& options) {
-    assert(image.width > 0 && image.height > 0 && (options.bits == 8 || options.bits == 16));
     OutputFile out(file);
-    std::string error = "out of memory";
-    const PngWriter writer(error);
-    std::vector<png_byte> row(static_cast<std::size_t>(image.width) * 3 * static_cast<std::size_t>(options.bits / 8));
-    const std::vector<png_text> chunks = text_chunks(options.text);
-    bool complete = false;
-    if (writer.info) {
-        png_set_write_fn(writer.png, &out, png_write_bytes, png_flush_nothing);
-        complete = encode(writer.png, writer.info, image, options, chunks, row);
-    }
-    if (!complete && !out.failed())
-        throw Error({.kind = ErrorKind::file,
-                     .place = file.string(),
-                     .expected = "a picture that libpng can write",
-                     .found = std::move(error),
-                     .advice = "write OpenEXR (.exr) instead"});
+    const auto to_file = [&](const png_byte* data, std::size_t bytes) { return out.write(data, bytes); };
+    std::optional<std::string> error = encode_to(to_file, image, options);
+    if (error && !out.failed()) throw_refused(file.string(), std::move(*error));
     out.commit();
+}
+
+std::string encode_png(const Image& image, const PngOptions& options) {
+    std::string bytes;
+    const auto to_memory = [&](const png_byte* data, std::size_t count) {
+        bytes.append(reinterpret_cast<const char*>(data), count);
+        return true;
+    };
+    std::optional<std::string> error = encode_to(to_memory, image, options);
+    if (error) throw_refused("picture", std::move(*error));
+    return bytes;
 }
 
 }  // namespace cellproj

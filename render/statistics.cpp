@@ -37,6 +37,7 @@ Json picture_json(const Statistics& picture) {
               {"order_violations", counts.order_violations}}},
             {"method", picture.method},
             {"target", picture.target},
+            {"table_bytes", picture.table_bytes},
             {"backend", picture.backend},
             {"backend_version", picture.backend_version},
             {"order", picture.order},

@@ -38,6 +38,7 @@ struct Statistics {
     } counts;
     std::string method;           // of integration: "preint3d:64"
     std::string target;           // format of the framebuffer: "rgba32f"
+    std::size_t table_bytes = 0;  // memory of its tables
     std::string backend;          // "gl_osmesa"
     std::string backend_version;  // what the driver says of itself
     std::string order;            // method of sorting: "mpvo"

@@ -23,6 +23,7 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
     picture.counts = {.cells = 11, .culled = 12, .drawn = 13, .triangles = 14, .unordered = 15, .order_violations = 16};
     picture.method = "preint3d:64";
     picture.target = "rgba16f";
+    picture.table_bytes = 4194304;
     picture.backend = "gl_osmesa";
     picture.backend_version = "4.5 (Core Profile)";
     picture.order = "mpvo";
@@ -34,7 +35,8 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
         "pictures": [{
             "ms": {"plan": 1.0, "sort": 2.0, "project": 3.0, "draw": 4.0, "read_back": 5.0, "total": 6.0, "write": 7.0},
             "counts": {"cells": 11, "culled": 12, "drawn": 13, "triangles": 14, "unordered": 15, "order_violations": 16},
-            "method": "preint3d:64", "target": "rgba16f", "backend": "gl_osmesa", "backend_version": "4.5 (Core Profile)",
+            "method": "preint3d:64", "target": "rgba16f", "table_bytes": 4194304,
+            "backend": "gl_osmesa", "backend_version": "4.5 (Core Profile)",
             "order": "mpvo", "error": 0.25}],
         "peak_memory_bytes": 123456789012})json";
     EXPECT_EQ(Json::parse(to_json(run)), Json::parse(expected)) << to_json(run);

@@ -146,6 +146,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.counts.unordered = order_report.unordered;
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
+    statistics.table_bytes = shader_ ? shader_->table_bytes() : 0;
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
     statistics.order = "mpvo";

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What `cellproj trade` measured, as a table for the terminal, CSV, JSON, and a page that holds all it shows.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "render/trade.hpp"
+
+namespace cellproj::cli {
+
+struct TradeReport {
+    std::string scene;             // what was drawn, in words
+    std::size_t judged = 0;        // pixels
+    int rounds = 0;
+    std::string backend;           // backend and version
+    std::span<const TradeRow> rows;  // by frame time, ascending
+    Image truth;                   // of the judged pixels
+    std::span<const PixelTruth> truths;
+};
+
+std::string to_table(const TradeReport& report);
+std::string to_csv(const TradeReport& report);
+std::string to_json(const TradeReport& report);
+// Needs nothing but itself: pictures and error maps are within, the plot is SVG.
+std::string to_html(const TradeReport& report);
+
+}  // namespace cellproj::cli

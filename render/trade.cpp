@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/trade.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "render/statistics.hpp"
+
+namespace cellproj {
+
+namespace {
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+double largest(const ImageError& error) {
+    return std::max(error.color.maximum, error.opacity.maximum);
+}
+
+bool is_better(const TradeRow& a, const TradeRow& b) {
+    const double error_a = a.error.color.rms, error_b = b.error.color.rms;
+    return a.frame_ms <= b.frame_ms && error_a <= error_b && (a.frame_ms < b.frame_ms || error_a < error_b);
+}
+
+double outside(double value, double low, double high) {
+    return std::max({low - value, value - high, 0.0});
+}
+
+double largest_error(const glm::vec4& pixel, const PixelTruth& truth) {
+    double error = outside(pixel.a, truth.low.opacity, truth.high.opacity);
+    for (int channel = 0; channel < 3; ++channel)
+        error = std::max(error, outside(pixel[channel], truth.low.color[channel], truth.high.color[channel]));
+    return error;
+}
+
+// 0..1 to colours that get lighter: dark blue, violet, red, yellow.
+glm::vec3 heat(double value) {
+    static constexpr std::array<glm::vec3, 4> colors{
+        {{0.03F, 0.05F, 0.25F}, {0.45F, 0.05F, 0.55F}, {0.90F, 0.25F, 0.20F}, {1.0F, 0.95F, 0.35F}}};
+    const double position = std::clamp(value, 0.0, 1.0) * (colors.size() - 1);
+    const std::size_t i = std::min(static_cast<std::size_t>(position), colors.size() - 2);
+    return glm::mix(colors[i], colors[i + 1], static_cast<float>(position - static_cast<double>(i)));
+}
+
+}  // namespace
+
+std::vector<Quality> trade_qualities() {
+    std::vector<Quality> qualities;
+    for (const char* method :
+         {"shirley-tuchman", "average", "average:vertices", "homogeneous", "homogeneous:vertices", "linear:8", "linear:32", "stein",
+          "preint2d:256", "preint2d-exp:256", "preint2d-exp:1024", "preint3d:32", "preint3d:64", "preint3d:128",
+          "preint3d:64:linear:uint8", "preint3d:64:linear", "preint3d:64:float16", "integral", "exact:1e-3", "exact:1e-5"}) {
+        qualities.push_back({.method = parse_method(method)});
+    }
+    return qualities;
+}
+
+std::vector<TradeRow> measure_trade(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
+                                    std::span<const Quality> qualities, std::span<const PixelTruth> truths,
+                                    const TradeOptions& options) {
+    assert(options.rounds >= 1);
+    std::vector<TradeRow> rows(qualities.size());
+    std::vector<std::vector<double>> set_up(rows.size()), frame(rows.size());
+    const std::size_t frames = rows.size() * static_cast<std::size_t>(options.rounds + 1);
+    std::size_t done = 0;
+    for (int round = 0; round <= options.rounds; ++round) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const Stopwatch preparing;
+            renderer.prepare(scene, qualities[i]);
+            const double set_up_ms = preparing.ms();
+            Statistics statistics;
+            Image image = renderer.render(scene, camera, size, qualities[i], &statistics);
+            if (options.progress) options.progress(++done, frames);
+            if (round == 0) {
+                rows[i].quality = qualities[i];
+                rows[i].table_bytes = statistics.table_bytes;
+                rows[i].error = compare(image, truths);
+                rows[i].image = std::move(image);
+                continue;
+            }
+            set_up[i].push_back(set_up_ms);
+            frame[i].push_back(statistics.ms.total);
+        }
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i].set_up_ms = median(std::move(set_up[i]));
+        rows[i].frame_ms = median(std::move(frame[i]));
+    }
+    mark_front(rows);
+    return rows;
+}
+
+void mark_front(std::span<TradeRow> rows) {
+    for (TradeRow& row : rows) {
+        row.on_front =
+            std::none_of(rows.begin(), rows.end(), [&](const TradeRow& other) { return is_better(other, row); });
+    }
+}
+
+const TradeRow* fastest_within(std::span<const TradeRow> rows, double max_error) {
+    const TradeRow* best = nullptr;
+    for (const TradeRow& row : rows) {
+        if (largest(row.error) <= max_error && (!best || row.frame_ms < best->frame_ms)) best = &row;
+    }
+    return best;
+}
+
+Image error_map(const Image& image, std::span<const PixelTruth> truths) {
+    Image map(image.width, image.height);
+    for (const PixelTruth& truth : truths) {
+        const double error = largest_error(image.at(truth.pixel.x, truth.pixel.y), truth);
+        const double decades = error > 0.0 ? std::log10(error) + 5.0 : 0.0;  // 0 at 1e-5, 4 at 1e-1
+        map.at(truth.pixel.x, truth.pixel.y) = glm::vec4(heat(std::isfinite(error) ? decades / 4.0 : 1.0), 1.0F);
+    }
+    return map;
+}
+
+}  // namespace cellproj
