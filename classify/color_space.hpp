@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The curved colour interpolations of ParaView's colour maps: CIE L*a*b* (D65) and the diverging one, Moreland,
+// The curved colour interpolations of ParaView's colour maps: HSV, CIE L*a*b* (D65) and the diverging one, Moreland,
 // "Diverging Color Maps for Scientific Visualization", ISVC 2009. All colours are sRGB in 0..1. Private to classify/.
 #pragma once
 
@@ -88,6 +88,36 @@ inline glm::dvec3 interpolate_diverging(const glm::dvec3& rgb_0, const glm::dvec
     if (to.saturation < unsaturated && from.saturation > unsaturated) to.hue = spun_hue(from, to.magnitude);
     return rgb_from_msh({std::lerp(from.magnitude, to.magnitude, t), std::lerp(from.saturation, to.saturation, t),
                          std::lerp(from.hue, to.hue, t)});
+}
+
+// Hue, saturation and value, each in 0..1 (Smith, "Color Gamut Transform Pairs", SIGGRAPH 1978). Grey has hue 0.
+inline glm::dvec3 hsv_from_rgb(const glm::dvec3& rgb) {
+    const double value = std::max({rgb.r, rgb.g, rgb.b}), chroma = value - std::min({rgb.r, rgb.g, rgb.b});
+    if (chroma <= 0.0) return {0.0, 0.0, value};
+    const double sector = value == rgb.r   ? (rgb.g - rgb.b) / chroma
+                          : value == rgb.g ? 2.0 + (rgb.b - rgb.r) / chroma
+                                           : 4.0 + (rgb.r - rgb.g) / chroma;
+    return {(sector < 0.0 ? sector + 6.0 : sector) / 6.0, chroma / value, value};
+}
+
+// Any hue: it is periodic with 1.
+inline glm::dvec3 rgb_from_hsv(const glm::dvec3& hsv) {
+    const auto channel = [&](double phase) {
+        const double sector = 6.0 * (hsv.x + phase - std::floor(hsv.x + phase));
+        return hsv.z * (1.0 - hsv.y * std::clamp(2.0 - std::abs(sector - 3.0), 0.0, 1.0));
+    };
+    return {channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0)};
+}
+
+// Through all hues between the two, as ParaView does.
+inline glm::dvec3 interpolate_hsv(const glm::dvec3& rgb_0, const glm::dvec3& rgb_1, double t) {
+    return rgb_from_hsv(glm::mix(hsv_from_rgb(rgb_0), hsv_from_rgb(rgb_1), t));
+}
+// The shorter way around the circle of hues: ParaView's HSVWrap.
+inline glm::dvec3 interpolate_hsv_wrapped(const glm::dvec3& rgb_0, const glm::dvec3& rgb_1, double t) {
+    glm::dvec3 from = hsv_from_rgb(rgb_0), to = hsv_from_rgb(rgb_1);
+    if (std::abs(from.x - to.x) > 0.5) (from.x > to.x ? from : to).x -= 1.0;
+    return rgb_from_hsv(glm::mix(from, to, t));
 }
 
 }  // namespace cellproj
