@@ -31,7 +31,7 @@ inline glm::dvec3 lab_from_rgb(const glm::dvec3& rgb) {
     return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
 }
 
-// Colours outside sRGB are clamped.
+// Colours outside sRGB are brought in as VTK does it: too bright ones are darkened in all channels, negative ones are clamped.
 inline glm::dvec3 rgb_from_lab(const glm::dvec3& lab) {
     const auto inverse_f = [](double t) { return t > 0.206893 ? t * t * t : (t - 16.0 / 116.0) / 7.787; };
     const double y = (lab.x + 16.0) / 116.0;
@@ -40,7 +40,7 @@ inline glm::dvec3 rgb_from_lab(const glm::dvec3& lab) {
     const glm::dvec3 rgb{srgb_from_linear(3.2406 * xyz.x - 1.5372 * xyz.y - 0.4986 * xyz.z),
                          srgb_from_linear(-0.9689 * xyz.x + 1.8758 * xyz.y + 0.0415 * xyz.z),
                          srgb_from_linear(0.0557 * xyz.x - 0.2040 * xyz.y + 1.0570 * xyz.z)};
-    return glm::clamp(rgb, 0.0, 1.0);
+    return glm::max(rgb / std::max({1.0, rgb.r, rgb.g, rgb.b}), 0.0);
 }
 
 inline glm::dvec3 interpolate_lab(const glm::dvec3& rgb_0, const glm::dvec3& rgb_1, double t) {
@@ -65,13 +65,13 @@ inline glm::dvec3 rgb_from_msh(const Msh& c) {
 }
 
 // The hue that an unsaturated colour should start with on its way to `saturated`, so that the path bends away from
-// purple.
+// purple. The bounds here and below are VTK's; Moreland writes π/3 for both angles and no 0.1. Colours between them differ.
 inline double spun_hue(const Msh& saturated, double unsaturated_magnitude) {
-    if (saturated.magnitude >= unsaturated_magnitude) return saturated.hue;
+    if (saturated.magnitude >= unsaturated_magnitude - 0.1) return saturated.hue;
     const double m = saturated.magnitude;
     const double spin = saturated.saturation * std::sqrt(unsaturated_magnitude * unsaturated_magnitude - m * m) /
                         (m * std::sin(saturated.saturation));
-    return saturated.hue > -std::numbers::pi / 3.0 ? saturated.hue + spin : saturated.hue - spin;
+    return saturated.hue > -0.3 * std::numbers::pi ? saturated.hue + spin : saturated.hue - spin;
 }
 
 inline glm::dvec3 interpolate_diverging(const glm::dvec3& rgb_0, const glm::dvec3& rgb_1, double t) {
@@ -79,7 +79,7 @@ inline glm::dvec3 interpolate_diverging(const glm::dvec3& rgb_0, const glm::dvec
     Msh from = msh_from_rgb(rgb_0), to = msh_from_rgb(rgb_1);
     // Two saturated colours of different hue meet at a white between them.
     const double apart = std::abs(std::remainder(from.hue - to.hue, 2.0 * std::numbers::pi));
-    if (from.saturation > unsaturated && to.saturation > unsaturated && apart > std::numbers::pi / 3.0) {
+    if (from.saturation > unsaturated && to.saturation > unsaturated && apart > 0.33 * std::numbers::pi) {
         const Msh white{std::max({from.magnitude, to.magnitude, 88.0}), 0.0, 0.0};
         (t < 0.5 ? to : from) = white;
         t = t < 0.5 ? 2.0 * t : 2.0 * t - 1.0;

@@ -230,8 +230,8 @@ void insert_bends(const Interpolation& interpolation, const glm::dvec3& from, co
         const glm::dvec3 error = glm::abs(at(std::lerp(begin, end, t)) - glm::mix(at(begin), at(end), t));
         straight = straight && std::max({error.r, error.g, error.b}) <= 0.75e-3;
     }
-    // Four lines at least: a curve may meet its chord three times.
-    if (end - begin <= 1.0 / 2048 || (straight && end - begin <= 0.25)) return;
+    // Sixteen lines at least: the hue of a dark colour on its way to white turns more than once.
+    if (end - begin <= 1.0 / 2048 || (straight && end - begin <= 1.0 / 16)) return;
     const double middle = 0.5 * (begin + end);
     insert_bends(interpolation, from, to, begin, middle, shares);
     shares.push_back(middle);
