@@ -275,9 +275,21 @@ bool flag(const Json& map, const std::string& key, const std::string& place) {
     return *entry == 1;
 }
 
-std::vector<ColorNode> paraview_colors(const Json& map, ScalarAxis axis, const std::string& place) {
+// Nodes checked while they have the file's numbering. The colour spaces are defined for what a screen shows.
+std::vector<ColorNode> paraview_nodes(const Json& map, const std::string& place) {
     std::vector<ColorNode> nodes = color_nodes(read_quadruples(map["RGBPoints"], place + ": RGBPoints"));
-    nodes = on_axis(std::move(nodes), ScalarAxis::linear, place);  // checks them while they have the file's numbering
+    nodes = on_axis(std::move(nodes), ScalarAxis::linear, place);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const glm::dvec3& c = nodes[i].color;
+        if (std::max({c.r, c.g, c.b}) > 1.0)
+            fail(ErrorKind::data, element(place + ": color", i), "color components in 0 .. 1", shown({c.r, c.g, c.b}),
+                 "correct this node");
+    }
+    return nodes;
+}
+
+std::vector<ColorNode> paraview_colors(const Json& map, ScalarAxis axis, const std::string& place) {
+    std::vector<ColorNode> nodes = paraview_nodes(map, place);
     enum class Space { rgb, hsv, lab, diverging, step };
     switch (choice<Space>(map, "ColorSpace", place,
                           {{"RGB", Space::rgb},

@@ -74,6 +74,8 @@ TEST(ParaViewColorMap, SaysWhatItCannotRead) {
     expect_words(parse_error(paraview("RGB", R"(, "UseLogScale": 1)")), ErrorKind::data, {"color[0]", "> 0"});
     expect_words(parse_error(R"([{"ColorSpace": "Lab", "RGBPoints": [0,0,0,0, 2,1,1,1, 1,0,0,0], "Points": [0,0,0.5,0]}])"),
                  ErrorKind::data, {"color[2]", "1 after 2"});  // the file's numbering, not that of inserted nodes
+    expect_words(parse_error(R"([{"ColorSpace": "Lab", "RGBPoints": [0,0,0,0, 2,1,1,1.5], "Points": [0,0,0.5,0]}])"),
+                 ErrorKind::data, {"color[1]", "0 .. 1", "1.5"});
     expect_words(parse_error(R"([{"RGBPoints": [0,0,0,0]}])"), ErrorKind::format, {"Points", "opacity"});
     expect_words(parse_error(R"([{"RGBPoints": [0,0,0], "Points": [0,0,0.5,0]}])"), ErrorKind::format,
                  {"RGBPoints", "4 numbers"});
