@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The curved colour interpolations of ParaView's colour maps: CIE L*a*b* (D65) and the diverging one, Moreland,
+// The curved colour interpolations of ParaView's colour maps: HSV, CIE L*a*b* (D65) and the diverging one, Moreland,
 // "Diverging Color Maps for Scientific Visualization", ISVC 2009. All colours are sRGB in 0..1. Private to classify/.
 #pragma once
 
@@ -31,7 +31,7 @@ inline glm::dvec3 lab_from_rgb(const glm::dvec3& rgb) {
     return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
 }
 
-// Colours outside sRGB are clamped.
+// Colours outside sRGB are brought in as VTK does it: too bright ones are darkened in all channels, negative ones are clamped.
 inline glm::dvec3 rgb_from_lab(const glm::dvec3& lab) {
     const auto inverse_f = [](double t) { return t > 0.206893 ? t * t * t : (t - 16.0 / 116.0) / 7.787; };
     const double y = (lab.x + 16.0) / 116.0;
@@ -40,7 +40,7 @@ inline glm::dvec3 rgb_from_lab(const glm::dvec3& lab) {
     const glm::dvec3 rgb{srgb_from_linear(3.2406 * xyz.x - 1.5372 * xyz.y - 0.4986 * xyz.z),
                          srgb_from_linear(-0.9689 * xyz.x + 1.8758 * xyz.y + 0.0415 * xyz.z),
                          srgb_from_linear(0.0557 * xyz.x - 0.2040 * xyz.y + 1.0570 * xyz.z)};
-    return glm::clamp(rgb, 0.0, 1.0);
+    return glm::max(rgb / std::max({1.0, rgb.r, rgb.g, rgb.b}), 0.0);
 }
 
 inline glm::dvec3 interpolate_lab(const glm::dvec3& rgb_0, const glm::dvec3& rgb_1, double t) {
@@ -65,13 +65,13 @@ inline glm::dvec3 rgb_from_msh(const Msh& c) {
 }
 
 // The hue that an unsaturated colour should start with on its way to `saturated`, so that the path bends away from
-// purple.
+// purple. The bounds here and below are VTK's; Moreland writes π/3 for both angles and no 0.1. Colours between them differ.
 inline double spun_hue(const Msh& saturated, double unsaturated_magnitude) {
-    if (saturated.magnitude >= unsaturated_magnitude) return saturated.hue;
+    if (saturated.magnitude >= unsaturated_magnitude - 0.1) return saturated.hue;
     const double m = saturated.magnitude;
     const double spin = saturated.saturation * std::sqrt(unsaturated_magnitude * unsaturated_magnitude - m * m) /
                         (m * std::sin(saturated.saturation));
-    return saturated.hue > -std::numbers::pi / 3.0 ? saturated.hue + spin : saturated.hue - spin;
+    return saturated.hue > -0.3 * std::numbers::pi ? saturated.hue + spin : saturated.hue - spin;
 }
 
 inline glm::dvec3 interpolate_diverging(const glm::dvec3& rgb_0, const glm::dvec3& rgb_1, double t) {
@@ -79,7 +79,7 @@ inline glm::dvec3 interpolate_diverging(const glm::dvec3& rgb_0, const glm::dvec
     Msh from = msh_from_rgb(rgb_0), to = msh_from_rgb(rgb_1);
     // Two saturated colours of different hue meet at a white between them.
     const double apart = std::abs(std::remainder(from.hue - to.hue, 2.0 * std::numbers::pi));
-    if (from.saturation > unsaturated && to.saturation > unsaturated && apart > std::numbers::pi / 3.0) {
+    if (from.saturation > unsaturated && to.saturation > unsaturated && apart > 0.33 * std::numbers::pi) {
         const Msh white{std::max({from.magnitude, to.magnitude, 88.0}), 0.0, 0.0};
         (t < 0.5 ? to : from) = white;
         t = t < 0.5 ? 2.0 * t : 2.0 * t - 1.0;
@@ -88,6 +88,36 @@ inline glm::dvec3 interpolate_diverging(const glm::dvec3& rgb_0, const glm::dvec
     if (to.saturation < unsaturated && from.saturation > unsaturated) to.hue = spun_hue(from, to.magnitude);
     return rgb_from_msh({std::lerp(from.magnitude, to.magnitude, t), std::lerp(from.saturation, to.saturation, t),
                          std::lerp(from.hue, to.hue, t)});
+}
+
+// Hue, saturation and value, each in 0..1 (Smith, "Color Gamut Transform Pairs", SIGGRAPH 1978). Grey has hue 0.
+inline glm::dvec3 hsv_from_rgb(const glm::dvec3& rgb) {
+    const double value = std::max({rgb.r, rgb.g, rgb.b}), chroma = value - std::min({rgb.r, rgb.g, rgb.b});
+    if (chroma <= 0.0) return {0.0, 0.0, value};
+    const double sector = value == rgb.r   ? (rgb.g - rgb.b) / chroma
+                          : value == rgb.g ? 2.0 + (rgb.b - rgb.r) / chroma
+                                           : 4.0 + (rgb.r - rgb.g) / chroma;
+    return {(sector < 0.0 ? sector + 6.0 : sector) / 6.0, chroma / value, value};
+}
+
+// Any hue: it is periodic with 1.
+inline glm::dvec3 rgb_from_hsv(const glm::dvec3& hsv) {
+    const auto channel = [&](double phase) {
+        const double sector = 6.0 * (hsv.x + phase - std::floor(hsv.x + phase));
+        return hsv.z * (1.0 - hsv.y * std::clamp(2.0 - std::abs(sector - 3.0), 0.0, 1.0));
+    };
+    return {channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0)};
+}
+
+// Through all hues between the two, as ParaView does.
+inline glm::dvec3 interpolate_hsv(const glm::dvec3& rgb_0, const glm::dvec3& rgb_1, double t) {
+    return rgb_from_hsv(glm::mix(hsv_from_rgb(rgb_0), hsv_from_rgb(rgb_1), t));
+}
+// The shorter way around the circle of hues: ParaView's HSVWrap.
+inline glm::dvec3 interpolate_hsv_wrapped(const glm::dvec3& rgb_0, const glm::dvec3& rgb_1, double t) {
+    glm::dvec3 from = hsv_from_rgb(rgb_0), to = hsv_from_rgb(rgb_1);
+    if (std::abs(from.x - to.x) > 0.5) (from.x > to.x ? from : to).x -= 1.0;
+    return rgb_from_hsv(glm::mix(from, to, t));
 }
 
 }  // namespace cellproj

@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include "classify/presets.hpp"
 #include "mesh/error.hpp"
 
 namespace cellproj {
@@ -97,12 +98,26 @@ void require_value(double value, double largest, const std::string& what, const 
     fail(place, what + " in 0 .. " + text(largest), text(value), "correct this node");
 }
 
-// `what` is the nodes' name in the JSON, so that "color[3]" leads to the same node in a file and in a program.
+// The lists by their names in the JSON, so that "color[3]" leads to the same node in a file and in a program.
+std::string list_of(const std::vector<ColorNode>&, const std::string& place) {
+    return place + ": color";
+}
+std::string list_of(const std::vector<ExtinctionNode>&, const std::string& place) {
+    return place + ": extinction";
+}
+std::string list_of(const std::vector<OpacityNode>&, const std::string& place) {
+    return place + ": opacity";
+}
 template <class Node>
-void require_ascending(const std::vector<Node>& nodes, const std::string& what, const std::string& place) {
-    if (nodes.empty()) fail(place + ": " + what, "at least one node", "none", "give at least one node");
+std::string node_of(const std::vector<Node>& nodes, std::size_t i, const std::string& place) {
+    return list_of(nodes, place) + "[" + std::to_string(i) + "]";
+}
+
+template <class Node>
+void require_ascending(const std::vector<Node>& nodes, const std::string& place) {
+    if (nodes.empty()) fail(list_of(nodes, place), "at least one node", "none", "give at least one node");
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const std::string here = place + ": " + what + "[" + std::to_string(i) + "]";
+        const std::string here = node_of(nodes, i, place);
         const double s = nodes[i].scalar;
         if (!(std::abs(s) <= largest_scalar))
             fail(here, "a finite scalar of magnitude up to 1e150", text(s), "correct this node");
@@ -114,24 +129,55 @@ void require_ascending(const std::vector<Node>& nodes, const std::string& what, 
 }
 
 void require_valid(const std::vector<ColorNode>& nodes, const std::string& place) {
-    require_ascending(nodes, "color", place);
+    require_ascending(nodes, place);
     for (std::size_t i = 0; i < nodes.size(); ++i)
         for (int channel = 0; channel < 3; ++channel)
-            require_value(nodes[i].color[channel], largest_value, "color components",
-                          place + ": color[" + std::to_string(i) + "]");
+            require_value(nodes[i].color[channel], largest_value, "color components", node_of(nodes, i, place));
 }
 
 void require_valid(const std::vector<ExtinctionNode>& nodes, const std::string& place) {
-    require_ascending(nodes, "extinction", place);
+    require_ascending(nodes, place);
     for (std::size_t i = 0; i < nodes.size(); ++i)
-        require_value(nodes[i].extinction, largest_value, "an extinction",
-                      place + ": extinction[" + std::to_string(i) + "]");
+        require_value(nodes[i].extinction, largest_value, "an extinction", node_of(nodes, i, place));
 }
 
 void require_valid(const std::vector<OpacityNode>& nodes, const std::string& place) {
-    require_ascending(nodes, "opacity", place);
+    require_ascending(nodes, place);
     for (std::size_t i = 0; i < nodes.size(); ++i)
-        require_value(nodes[i].opacity, 1.0, "an opacity", place + ": opacity[" + std::to_string(i) + "]");
+        require_value(nodes[i].opacity, 1.0, "an opacity", node_of(nodes, i, place));
+}
+
+template <class Node>
+void require_positive(const std::vector<Node>& nodes, const std::string& place) {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (!(nodes[i].scalar > 0.0))
+            fail(node_of(nodes, i, place), "a scalar > 0 on a logarithmic axis",
+                 text(nodes[i].scalar), "give scalars > 0, or take the linear axis");
+}
+
+// Lines of equal length h in ln s. Over one of them ln s is above its chord by at most h/8 of the line's change, which is
+// 1/lines of the change from node to node: (ln high/low)/lines²/8 in all.
+int lines_between(double low, double high) {
+    constexpr double largest_error = 1e-3;
+    const double logarithm = std::log(high) - std::log(low);  // the ratio itself may overflow
+    return std::max(1, static_cast<int>(std::ceil(std::sqrt(logarithm / (8.0 * largest_error)))));
+}
+
+template <class Node>
+std::vector<Node> along_logarithm(const std::vector<Node>& nodes, const std::string& place) {
+    require_positive(nodes, place);
+    std::vector<Node> lines;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const int count = i == 0 ? 1 : lines_between(nodes[i - 1].scalar, nodes[i].scalar);
+        for (int k = 1; k < count; ++k) {
+            const double share = static_cast<double>(k) / count;
+            const double s = scalar_between(nodes[i - 1].scalar, nodes[i].scalar, share, ScalarAxis::log);
+            if (s > lines.back().scalar && s < nodes[i].scalar)
+                lines.push_back({s, interpolate(value_of(nodes[i - 1]), value_of(nodes[i]), share)});
+        }
+        lines.push_back(nodes[i]);
+    }
+    return lines;
 }
 
 std::vector<double> scalars_of(const std::vector<ColorNode>& color, const std::vector<ExtinctionNode>& extinction) {
@@ -228,9 +274,26 @@ bool TransferFunction::visible(double a, double b) const {
     return model_ == OpticalModel::emitter && max_over(color_, a, b, outside_, largest_component) > 0.0;
 }
 
+double scalar_between(double low, double high, double share, ScalarAxis axis) {
+    const double s = axis == ScalarAxis::linear ? std::lerp(low, high, share)
+                                                : std::exp(std::lerp(std::log(low), std::log(high), share));
+    return share <= 0.0 ? low : share >= 1.0 ? high : std::clamp(s, low, high);
+}
+
+std::vector<ColorNode> on_axis(std::vector<ColorNode> nodes, ScalarAxis axis, const std::string& place) {
+    require_valid(nodes, place);
+    return axis == ScalarAxis::linear ? nodes : along_logarithm(nodes, place);
+}
+std::vector<ExtinctionNode> on_axis(std::vector<ExtinctionNode> nodes, ScalarAxis axis, const std::string& place) {
+    require_valid(nodes, place);
+    return axis == ScalarAxis::linear ? nodes : along_logarithm(nodes, place);
+}
+
 std::vector<ExtinctionNode> extinction_from_opacity(const std::vector<OpacityNode>& opacity, double unit_distance,
-                                                    OpacityConvention convention, const std::string& place) {
+                                                    OpacityConvention convention, const std::string& place,
+                                                    ScalarAxis axis) {
     require_valid(opacity, place);
+    if (axis == ScalarAxis::log) require_positive(opacity, place);
     if (!(unit_distance > 0.0 && std::isfinite(unit_distance)))
         throw Error({ErrorKind::option, place + ": unit_distance", "a length > 0 [mesh units]", text(unit_distance),
                      "give the distance that the opacities hold for"});
@@ -239,7 +302,7 @@ std::vector<ExtinctionNode> extinction_from_opacity(const std::vector<OpacityNod
     if (convention == OpacityConvention::linear) {
         for (const OpacityNode& node : opacity)
             nodes.push_back({node.scalar, node.opacity / unit_distance});
-        return nodes;
+        return on_axis(std::move(nodes), axis, place);
     }
 
     // WVG91 Eq. 2. Between two nodes 1 − α is linear in s, and the chord of −ln x over a ratio e^h of x errs by at most
@@ -254,47 +317,27 @@ std::vector<ExtinctionNode> extinction_from_opacity(const std::vector<OpacityNod
         for (int step = 1; step < steps; ++step) {
             const double d = interpolate(depth(i - 1), depth(i), static_cast<double>(step) / steps);
             const double t = (-std::expm1(-d) - alpha(i - 1)) / (alpha(i) - alpha(i - 1));
-            const double inserted = std::lerp(opacity[i - 1].scalar, s, t);
+            const double inserted = scalar_between(opacity[i - 1].scalar, s, t, axis);
             if (inserted > nodes.back().scalar && inserted < s) nodes.push_back({inserted, d / unit_distance});
         }
         nodes.push_back({s, depth(i) / unit_distance});
     }
-    return nodes;
+    return on_axis(std::move(nodes), axis, place);
 }
 
-TransferFunction default_transfer_function(double low, double high, double size) {
+TransferFunction with_scaled_extinction(const TransferFunction& function, double factor) {
+    assert(factor >= 0.0);
+    std::vector<ExtinctionNode> extinction = function.extinction_nodes();
+    for (ExtinctionNode& node : extinction) node.extinction *= factor;
+    return {function.model(), function.color_nodes(), std::move(extinction), function.outside()};
+}
+
+TransferFunction default_transfer_function(double low, double high, double size, std::string_view colors, ScalarAxis axis) {
     assert(low <= high && size >= 0.0);
-    // Every 16th entry (the last: the 255th) of matplotlib's viridis by van der Walt and Smith, released under CC0.
-    static constexpr std::array<std::array<double, 3>, 17> viridis{{
-        {0.267004, 0.004874, 0.329415},
-        {0.282327, 0.094955, 0.417331},
-        {0.278826, 0.175490, 0.483397},
-        {0.258965, 0.251537, 0.524736},
-        {0.229739, 0.322361, 0.545706},
-        {0.199430, 0.387607, 0.554642},
-        {0.172719, 0.448791, 0.557885},
-        {0.149039, 0.508051, 0.557250},
-        {0.127568, 0.566949, 0.550556},
-        {0.120638, 0.625828, 0.533488},
-        {0.157851, 0.683765, 0.501686},
-        {0.246070, 0.738910, 0.452024},
-        {0.369214, 0.788888, 0.382914},
-        {0.515992, 0.831158, 0.294279},
-        {0.678489, 0.863742, 0.189503},
-        {0.845561, 0.887322, 0.099702},
-        {0.993248, 0.906157, 0.143936},
-    }};
-    std::vector<ColorNode> color;
-    for (std::size_t k = 0; k < viridis.size(); ++k) {
-        const double s = std::lerp(low, high, std::min(16.0 * static_cast<double>(k) / 255.0, 1.0));
-        // In a range of few ulps, down to a constant field, neighbouring nodes fall together: the higher one stays.
-        if (!color.empty() && s <= color.back().scalar) color.pop_back();
-        color.push_back({s, {viridis[k][0], viridis[k][1], viridis[k][2]}});
-    }
     const double densest = 8.0 / (size > 0.0 ? size : 1.0);
     std::vector<ExtinctionNode> extinction{{low, 0.0}, {high, densest}};
     if (low == high) extinction.erase(extinction.begin());
-    return {OpticalModel::density, std::move(color), std::move(extinction)};
+    return {OpticalModel::density, preset_colors(colors, low, high, axis), on_axis(std::move(extinction), axis)};
 }
 
 }  // namespace cellproj

@@ -26,6 +26,9 @@ enum class OpacityConvention { exponential, linear };
 // What holds outside the first and the last node: their values, or nothing (q = τ = 0).
 enum class Outside { clamp, transparent };
 
+// What the function is linear in between two nodes: the scalar s, or ln s. In a cell s stays linear either way.
+enum class ScalarAxis { linear, log };
+
 struct ColorNode {
     double scalar;
     glm::dvec3 color;
@@ -106,31 +109,53 @@ private:
     std::vector<RunningIntegral> cumulative_extinction_;
 };
 
-// Extinction nodes for a piecewise-linear opacity. With the exponential convention τ(s) is curved between nodes: nodes
-// are inserted until the piecewise-linear τ·u is within 1e-3 of −ln(1 − α) everywhere. α = 1 would be an infinite
-// extinction; it counts as 1 − 2⁻²⁴, the last opacity that float32 can tell from 1. Where float64 has no scalar left
-// between two nodes nothing can be inserted. Throws Error (data) for an opacity outside 0..1 or a bad order of nodes,
-// Error (option) unless unit_distance > 0 [mesh units].
+// The scalar at a share 0..1 of the way from `low` to `high` along the axis, within low..high; low ≤ high, both > 0 on a
+// logarithmic axis.
+double scalar_between(double low, double high, double share, ScalarAxis axis);
+
+// Nodes whose straight lines in s follow a function that is linear between `nodes` along the axis: on a logarithmic one
+// nodes are inserted until every line is within 1e-3 of the change from node to node (a decade takes 17 lines); the given
+// nodes stay as they are. Throws Error (data) naming `place` and the node: as TransferFunction does, and for a scalar ≤ 0 on a
+// logarithmic axis.
+std::vector<ColorNode> on_axis(std::vector<ColorNode> nodes, ScalarAxis axis, const std::string& place = "transfer function");
+std::vector<ExtinctionNode> on_axis(std::vector<ExtinctionNode> nodes, ScalarAxis axis,
+                                    const std::string& place = "transfer function");
+
+// The same function with `factor` times its extinction, factor ≥ 0: thicker or thinner. In the density model the emission goes
+// with it. Throws Error (data) when an extinction grows past 1e60.
+TransferFunction with_scaled_extinction(const TransferFunction& function, double factor);
+
+// Extinction nodes for an opacity that is linear between its nodes along the axis. With the exponential convention τ(s) is
+// curved between nodes: nodes are inserted until the piecewise-linear τ·u is within 1e-3 of −ln(1 − α) everywhere. α = 1 would
+// be an infinite extinction; it counts as 1 − 2⁻²⁴, the last opacity that float32 can tell from 1. Where float64 has no scalar left
+// between two nodes nothing can be inserted. On a logarithmic axis the lines of `on_axis` come on top. Throws Error (data) for
+// an opacity outside 0..1, a bad order of nodes or a scalar ≤ 0 on a logarithmic axis, Error (option) unless unit_distance > 0
+// [mesh units].
 std::vector<ExtinctionNode> extinction_from_opacity(const std::vector<OpacityNode>& opacity, double unit_distance,
                                                     OpacityConvention convention,
-                                                    const std::string& place = "transfer function");
+                                                    const std::string& place = "transfer function",
+                                                    ScalarAxis axis = ScalarAxis::linear);
 
-// The strict JSON of the design: "color" and "extinction", or "color" and "opacity" with "unit_distance"; "model"
-// (density unless given), "opacity_convention" (exponential) and "outside" (clamp). Throws Error (format, option, data)
-// naming `place` and the key.
+// The strict JSON of the design: "color", or "preset" (presets.hpp) with "range"; "extinction", or "opacity" with
+// "unit_distance"; "model" (density unless given), "opacity_convention" (exponential), "outside" (clamp) and "axis" (linear).
+// Throws Error (format, option, data) naming `place` and the key.
 //
-// ParaView's exported colour maps are read as well (RGB, Lab or Diverging colour space, opacity points included in the
-// export). They do not tell the unit distance of their opacity: it is taken from a key "unit_distance" added beside
+// ParaView's exported colour maps are read as well: colour spaces RGB, HSV (with "HSVWrap"), Lab, Diverging and Step, opacity
+// points included in the export; "UseLogScale" makes the axis of both logarithmic. Curved colours become straight lines within
+// 1e-3. They do not tell the unit distance of their opacity: it is taken from a key "unit_distance" added beside
 // "Points", else from `paraview_unit_distance` [mesh units]. ParaView itself starts with the bounding box's diagonal
-// divided by ∛(number of cells).
-TransferFunction parse_transfer_function(std::string_view json, const std::string& place,
-                                         double paraview_unit_distance = 1.0);
-// Throws Error (file) besides, when the file cannot be read.
+// divided by ∛(number of cells). Of a list of several maps the one of "Name" `map_name` is taken.
+TransferFunction parse_transfer_function(std::string_view json, const std::string& place, double paraview_unit_distance = 1.0,
+                                         std::string_view map_name = {});
+// FILE, or FILE#NAME for one map of several (a file whose own name holds a # comes first). Throws Error (file) besides, when
+// the file cannot be read.
 TransferFunction read_transfer_function(const std::filesystem::path& file, double paraview_unit_distance = 1.0);
 
-// A first picture for scalars in low..high of a mesh `size` [mesh units] across: perceptual colours (viridis), and an
-// extinction that rises from 0 so that a path through the whole mesh at the highest scalar has optical depth 8. low ≤
-// high; a constant field gets the highest scalar's light; size 0 counts as 1.
-TransferFunction default_transfer_function(double low, double high, double size);
+// A first picture for scalars in low..high of a mesh `size` [mesh units] across: the colours of a preset (presets.hpp), and an
+// extinction that rises from 0 along the axis so that a path through the whole mesh at the highest scalar has optical depth 8.
+// low ≤ high; a constant field gets the highest scalar's light; size 0 counts as 1. Throws Error: (option) for an unknown
+// preset, (data) where `on_axis` does.
+TransferFunction default_transfer_function(double low, double high, double size, std::string_view colors = "viridis",
+                                           ScalarAxis axis = ScalarAxis::linear);
 
 }  // namespace cellproj

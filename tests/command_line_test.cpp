@@ -303,6 +303,35 @@ TEST_F(CommandLine, RefusesBadTransferFunctionsAndCameras) {
     expect_refused("render cube.vtk -o a.png --camera cam.json", {"cam.json", "eye"});
 }
 
+TEST_F(CommandLine, ColorsAreChosenByName) {
+    const auto picture = [&](const std::string& options) {
+        const Outcome outcome = run("render cube.vtk -o a.png --size 20x20 " + options);
+        EXPECT_EQ(outcome.code, 0) << outcome.text;
+        std::ifstream stream(path("a.png"), std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    const std::string plain = picture("");
+    EXPECT_EQ(picture("--colors viridis --opacity-scale 1 --axis linear"), plain);
+    EXPECT_NE(picture("--colors turbo"), plain);
+    EXPECT_NE(picture("--range 0,2"), plain);
+    EXPECT_NE(picture("--opacity-scale 3"), plain);
+    EXPECT_NE(picture("--axis log --range 0.5,7"), picture("--range 0.5,7"));
+    write("tf.json", R"({"preset": "gray", "range": [0, 7], "extinction": [[0, 0], [7, 3]]})");
+    EXPECT_NE(picture("--transfer tf.json --opacity-scale 0.5"), picture("--transfer tf.json"));
+    EXPECT_NE(run("render cube.vtk -o a.png --size 20x20 --opacity-scale 0").text.find("blank"), std::string::npos);
+
+    expect_refused("render cube.vtk -o b.png --colors jet", {"--colors", "\"jet\"", "viridis"});
+    expect_refused("render cube.vtk -o b.png --range 2,1", {"--range", "2,1"});
+    expect_refused("render cube.vtk -o b.png --range nan,1", {"--range"});
+    expect_refused("render cube.vtk -o b.png --range 0,1e200", {"--range", "1e+200", "1e150"});
+    expect_refused("render cube.vtk -o b.png --axis log", {"--axis log", "\"p\"", "--range"});
+    expect_refused("render cube.vtk -o b.png --transfer tf.json#Jet", {"tf.json", "Jet"});
+    EXPECT_EQ(run("render cube.vtk -o b.png --colors turbo --transfer tf.json").code, 2);
+    EXPECT_EQ(run("render cube.vtk -o b.png --axis cubic").code, 2);
+    EXPECT_EQ(run("render cube.vtk -o b.png --opacity-scale -1").code, 2);
+    EXPECT_EQ(run("render cube.vtk -o b.png --range 1").code, 2);
+}
+
 TEST_F(CommandLine, ABlankPictureIsNotSilent) {
     write("far.json", R"({"projection": "parallel", "eye": [900,0,0], "center": [900,9,0], "up": [0,0,1], "height": 1})");
     const Outcome outcome = run("render cube.vtk -o a.png --size 20x20 --camera far.json");

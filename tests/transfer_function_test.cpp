@@ -12,6 +12,7 @@
 #include <string>
 
 #include "mesh/error.hpp"
+#include "tests/support/transfer_errors.hpp"
 
 namespace cellproj {
 namespace {
@@ -21,29 +22,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 TransferFunction of_extinction(std::vector<ExtinctionNode> nodes, Outside outside = Outside::clamp) {
     return {OpticalModel::density, {{0.0, {1, 1, 1}}}, std::move(nodes), outside};
-}
-
-// The Error that `action` throws; fails the test when it throws none.
-template <class Action>
-Error error_of(Action action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error;
-    }
-    ADD_FAILURE() << "no Error was thrown";
-    return Error({ErrorKind::environment, "", "", "", ""});
-}
-
-Error parse_error(const std::string& json) {
-    return error_of([&] { parse_transfer_function(json, "tf.json"); });
-}
-
-// Every word must be in the message: that is what the user reads.
-void expect_words(const Error& error, ErrorKind kind, const std::vector<std::string>& words) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    for (const std::string& word : words)
-        EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << '"' << word << "\" in: " << error.what();
 }
 
 // Evaluation
@@ -289,6 +267,26 @@ TEST(TransferFunctionJson, ValuesAreStrict) {
     expect_words(with(R"("opacity": [[0,0],[1,1.25]], "unit_distance": 1)"), ErrorKind::data, {"opacity[1]", "1.25"});
     expect_words(with(R"("opacity": [[0,0]], "unit_distance": -1)"), ErrorKind::option, {"unit_distance", "-1"});
     expect_words(with(R"("opacity": [[0,0]], "unit_distance": "1")"), ErrorKind::format, {"unit_distance", "a number"});
+    expect_words(with(R"("extinction": [[0,1]], "axis": "logarithmic")"), ErrorKind::option, {"axis", "\"log\"?"});
+    expect_words(with(R"("extinction": [[0,1]], "axis": "log")"), ErrorKind::data, {"tf.json: color[0]", "> 0", "linear"});
+    expect_words(with(R"("extinction": [[0,1]], "range": [0, 1])"), ErrorKind::format, {"range", "preset"});
+    expect_words(with(R"("extinction": [[0,1]], "preset": "turbo", "range": [0, 1])"), ErrorKind::format, {"both"});
+}
+
+TEST(TransferFunctionJson, PresetsAndAxesAreRead) {
+    const TransferFunction f = parse_transfer_function(
+        R"({"preset": "gray", "range": [1, 100], "axis": "log", "extinction": [[1, 0], [100, 4]]})", "");
+    for (const double share : {0.0, 0.25, 0.5, 1.0}) {
+        EXPECT_NEAR(f.color(std::pow(100, share)).r, share, 1e-3);
+        EXPECT_NEAR(f.extinction(std::pow(100, share)), 4 * share, 4e-3);
+    }
+    const auto preset = [](const std::string& rest) { return parse_error(R"({"extinction": [[1,1]], )" + rest + "}"); };
+    expect_words(preset(R"("preset": "grey", "range": [0, 1])"), ErrorKind::option, {"preset", "\"grey\"", "\"gray\"?"});
+    expect_words(preset(R"("preset": 3, "range": [0, 1])"), ErrorKind::format, {"preset", "3"});
+    expect_words(preset(R"("preset": "gray")"), ErrorKind::format, {"\"range\"", "[low, high]"});
+    expect_words(preset(R"("preset": "gray", "range": [0])"), ErrorKind::format, {"range", "[0]"});
+    expect_words(preset(R"("preset": "gray", "range": [2, 1])"), ErrorKind::data, {"range", "[2,1]", "swap"});
+    expect_words(preset(R"("preset": "gray", "range": [0, 1], "axis": "log")"), ErrorKind::data, {"preset", "> 0"});
 }
 
 TEST(TransferFunctionJson, FilesAreReadAndNamed) {
@@ -303,95 +301,6 @@ TEST(TransferFunctionJson, FilesAreReadAndNamed) {
                  {"none.json", "No such file"});
     expect_words(error_of([&] { read_transfer_function(folder); }), ErrorKind::file, {"a folder"});
     std::filesystem::remove_all(folder);
-}
-
-// ParaView
-
-std::string paraview(const std::string& color_space, const std::string& more = "") {
-    return R"([{"ColorSpace": ")" + color_space + R"(", "Name": "Cool to Warm", "NanColor": [1, 1, 0],
-        "RGBPoints": [0, 0.231373, 0.298039, 0.752941, 0.5, 0.865003, 0.865003, 0.865003, 1, 0.705882, 0.0156863, 0.14902],
-        "Points": [0, 0, 0.5, 0, 1, 0.5, 0.5, 0])" +
-           more + "}]";
-}
-
-TEST(ParaViewColorMap, IsReadWithTheGivenUnitDistance) {
-    const TransferFunction f = parse_transfer_function(paraview("RGB"), "", 2.0);
-    EXPECT_EQ(f.color(1), glm::dvec3(0.705882, 0.0156863, 0.14902));
-    EXPECT_NEAR(f.color(0.25).b, 0.5 * (0.752941 + 0.865003), 1e-15);
-    EXPECT_DOUBLE_EQ(f.extinction(1), std::log(2.0) / 2.0);
-    EXPECT_DOUBLE_EQ(parse_transfer_function(paraview("RGB", R"(, "unit_distance": 4)"), "").extinction(1),
-                     std::log(2.0) / 4.0);
-}
-
-TEST(ParaViewColorMap, DivergingPassesThroughMorelandsPublishedColors) {
-    // Moreland's 33-entry table for this map: its 9th and 25th rows (a quarter and three quarters of the way), in
-    // 0..255.
-    const TransferFunction f = parse_transfer_function(paraview("Diverging"), "");
-    const glm::dvec3 quarter = f.color(0.25) * 255.0, three_quarters = f.color(0.75) * 255.0;
-    const glm::dvec3 cool(141, 176, 254), warm(244, 154, 123);
-    for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(quarter[c], cool[c], 1.5)
-            << c;  // rounding of the table, and of the matrices between the colour spaces
-        EXPECT_NEAR(three_quarters[c], warm[c], 1.5) << c;
-    }
-}
-
-TEST(ParaViewColorMap, DivergingAndLabMeetTheirNodes) {
-    for (const char* space : {"Diverging", "Lab"}) {
-        const TransferFunction f = parse_transfer_function(paraview(space), "");
-        EXPECT_EQ(f.color(0.5), glm::dvec3(0.865003));
-        // Beside the node, the curve must come close to it: 1e-3 for the rounded matrices between the colour spaces.
-        for (const double s : {1e-4, 0.5 - 1e-4, 0.5 + 1e-4, 1 - 1e-4}) {
-            const double node = std::round(2 * s) / 2;
-            for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(f.color(s)[c], f.color(node)[c], 2e-3) << space << s;
-        }
-    }
-}
-
-TEST(ParaViewColorMap, LabKeepsGreysGrey) {
-    const TransferFunction f =
-        parse_transfer_function(R"({"ColorSpace": "Lab", "RGBPoints": [0,0,0,0, 1,1,1,1], "Points": [0,0,0.5,0]})", "");
-    const glm::dvec3 middle = f.color(0.5);  // L* = 50: 119/255 in sRGB
-    for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(middle[c], 0.466, 2e-3);
-}
-
-TEST(ParaViewColorMap, SaysWhatItCannotRead) {
-    expect_words(parse_error(paraview("HSV")), ErrorKind::option, {"ColorSpace", "\"HSV\"", "\"RGB\""});
-    expect_words(parse_error(R"([{"RGBPoints": [0,0,0,0]}])"), ErrorKind::format, {"Points", "opacity"});
-    expect_words(parse_error(R"([{"RGBPoints": [0,0,0], "Points": [0,0,0.5,0]}])"), ErrorKind::format,
-                 {"RGBPoints", "4 numbers"});
-    expect_words(parse_error(R"([{"RGBPoints": [0,0,0,0], "Points": [0,0,0.5,0.3]}])"), ErrorKind::data,
-                 {"Points[0]", "sharpness"});
-}
-
-// Default
-
-TEST(DefaultTransferFunction, HasDepthEightAndViridisEnds) {
-    const TransferFunction f = default_transfer_function(-2, 6, 4);
-    EXPECT_EQ(f.extinction(-2), 0.0);
-    EXPECT_EQ(f.extinction(6) * 4, 8.0);
-    EXPECT_EQ(f.color(-2), glm::dvec3(0.267004, 0.004874, 0.329415));
-    EXPECT_EQ(f.color(6), glm::dvec3(0.993248, 0.906157, 0.143936));
-    // Perceptual: luminance never falls.
-    double before = 0.0;
-    for (int k = 0; k <= 100; ++k) {
-        const glm::dvec3 c = f.color(-2 + 0.08 * k);
-        const double luminance = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
-        EXPECT_GE(luminance, before);
-        before = luminance;
-    }
-}
-
-TEST(DefaultTransferFunction, WorksForEmptyAndExtremeRanges) {
-    const double next = std::nextafter(5.0, 6.0);
-    for (const auto& [low, high] : {std::pair(5.0, 5.0), {5.0, next}, {0.0, 1e30}, {-1e-30, 1e-30}})
-        for (const double size : {0.0, 1e-12, 1e12}) {
-            const TransferFunction f = default_transfer_function(low, high, size);
-            EXPECT_DOUBLE_EQ(f.extinction(high), 8.0 / (size > 0 ? size : 1.0));
-            EXPECT_EQ(f.color(high), glm::dvec3(0.993248, 0.906157, 0.143936));
-        }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "classify/presets.hpp"
 #include "commands.hpp"
 #include "input.hpp"
 #include "mesh/error.hpp"
@@ -33,6 +34,10 @@ struct RenderOptions {
     std::optional<double> nan;
     double orbit_degrees = 0;
     int frames = 1, bits = 8;
+    std::string colors = preset_names().front(), axis = "linear";
+    std::vector<double> range;  // empty, or low and high
+    double opacity_scale = 1;
+    bool colors_chosen = false;  // by any of --colors, --range, --axis
 };
 
 glm::dvec3 vector3(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
@@ -85,20 +90,56 @@ double mean_path(const TetMesh& mesh) {
     return volume > 0 && surface > 0 ? 4 * volume / surface : box.diagonal();
 }
 
-std::shared_ptr<const TransferFunction> choose_transfer(const RenderOptions& options, const Input& input,
-                                                        const ScalarField& field) {
-    if (!options.transfer.empty()) {
-        return std::make_shared<TransferFunction>(read_transfer_function(options.transfer));
-    }
-    if (input.transfer && options.field.empty()) return input.transfer;
-    // The 1 % at each end are outliers more often than flow.
-    double low = quantile(field.values, 0.01), high = quantile(field.values, 0.99);
-    if (low == high) {
-        low = range(field.values).low;
-        high = range(field.values).high;
+std::string in_words(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", number);
+    return text;
+}
+
+struct ScalarRange {
+    double low, high;
+};
+
+// --range, or what most of the field lies in: the 1 % at each end are outliers more often than flow.
+ScalarRange choose_range(const RenderOptions& options, const ScalarField& field) {
+    if (!options.range.empty()) return {options.range[0], options.range[1]};
+    const ScalarRange most{quantile(field.values, 0.01), quantile(field.values, 0.99)};
+    if (most.low < most.high) return most;
+    const auto whole = range(field.values);
+    return {whole.low, whole.high};
+}
+
+TransferFunction preset_transfer(const RenderOptions& options, const Input& input, const ScalarField& field) {
+    const auto [low, high] = choose_range(options, field);
+    const bool log = options.axis == "log";
+    if (log && !(low > 0)) {
+        throw Error({ErrorKind::option, "--axis log", "a range above 0",
+                     in_words(low) + " .. " + in_words(high) + " of field \"" + field.name + '"',
+                     "give --range LOW,HIGH with LOW > 0"});
     }
     // A cube's diagonal is 2.6 times its mean path.
-    return std::make_shared<TransferFunction>(default_transfer_function(low, high, 2.6 * mean_path(*input.mesh)));
+    return default_transfer_function(low, high, 2.6 * mean_path(*input.mesh), options.colors,
+                                     log ? ScalarAxis::log : ScalarAxis::linear);
+}
+
+std::shared_ptr<const TransferFunction> choose_transfer(const RenderOptions& options, const Input& input,
+                                                        const ScalarField& field) {
+    const bool from_scene = input.transfer && options.field.empty() && !options.colors_chosen;
+    const TransferFunction transfer = !options.transfer.empty() ? read_transfer_function(options.transfer)
+                                      : from_scene              ? *input.transfer
+                                                                : preset_transfer(options, input, field);
+    return std::make_shared<TransferFunction>(with_scaled_extinction(transfer, options.opacity_scale));
+}
+
+// What can be refused without a mesh.
+void check_colors(const RenderOptions& options) {
+    preset_colors(options.colors, 0, 1, ScalarAxis::linear, "--colors");
+    if (options.range.empty()) return;
+    const double low = options.range[0], high = options.range[1];
+    if (!(low <= high && std::max(-low, high) <= 1e150)) {
+        throw Error({ErrorKind::option, "--range", "LOW,HIGH with LOW ≤ HIGH, of magnitude up to 1e150",
+                     in_words(low) + "," + in_words(high), "correct it"});
+    }
 }
 
 // picture.png → picture_007.png when there are several.
@@ -177,6 +218,7 @@ void render_pictures(const RenderOptions& options) {
                           .target = parse_target_format(options.target, "--target")};
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
+    check_colors(options);
 
     const Input input = options.tetrahedralize ? load_filled(options.input.file, options.surface) : load(options.input);
     const auto field = std::make_shared<const ScalarField>(choose_field(options, input));
@@ -229,7 +271,22 @@ void add_render_command(CLI::App& app) {
     command->add_option("--field", options->field, "The field to draw (default: the first); vectors by magnitude, or U:x, U:y, U:z");
     command->add_option("--cell-values", options->cell_values, "How cell fields are drawn: constant in a cell, or averaged to the points")
         ->check(CLI::IsMember({"constant", "averaged"}))->capture_default_str();
-    command->add_option("--transfer", options->transfer, "Transfer function (JSON); default: viridis over the 1-99 % range");
+    CLI::Option* transfer = command->add_option("--transfer", options->transfer,
+                                                "Transfer function (JSON), FILE#NAME for one of several; default: --colors and --range");
+    std::string presets;
+    for (const std::string& name : preset_names()) presets += (presets.empty() ? "" : ", ") + name;
+    const std::vector<CLI::Option*> chosen{
+        command->add_option("--colors", options->colors, "Colours by name: " + presets)->capture_default_str(),
+        command->add_option("--range", options->range,
+                            "Scalars LOW,HIGH of the first and last colour; default: the field's 1-99 % range")
+            ->expected(2)->delimiter(','),
+        command->add_option("--axis", options->axis,
+                            "What colour and opacity are spread over: the scalar (linear) or its logarithm (log)")
+            ->check(CLI::IsMember({"linear", "log"}))->capture_default_str()};
+    for (CLI::Option* option : chosen)
+        option->excludes(transfer)->each([options](const std::string&) { options->colors_chosen = true; });
+    command->add_option("--opacity-scale", options->opacity_scale, "Multiplies the extinction of any transfer function")
+        ->check(CLI::Range(0.0, 1e9))->capture_default_str();
     CLI::Option* camera = command->add_option("--camera", options->camera, "Camera or array of cameras (JSON)");
     command->add_option("--from", options->from, "Direction from which the whole mesh is seen: X,Y,Z")
         ->expected(3)->delimiter(',')->capture_default_str()->excludes(camera);
