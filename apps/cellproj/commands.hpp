@@ -13,5 +13,6 @@ void add_check_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_tetrahedralize_command(CLI::App& app);
+void add_trade_command(CLI::App& app);
 
 }  // namespace cellproj::cli

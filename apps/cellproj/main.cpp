@@ -18,6 +18,7 @@ constexpr const char* description =
     "  cellproj render flow.vtu -o flow.png\n"
     "  cellproj render flow.vtu -o flow.png --field p --transfer tf.json --size 1024x768\n"
     "  cellproj render grid.xyz --q solution.q -o mach.png --field Mach --from -1,-2,1\n"
+    "  cellproj trade flow.vtu -o trade.html\n"
     "  cellproj tetrahedralize part.stl -o part.vtu\n"
     "  cellproj render part.stl --tetrahedralize -o part.png\n"
     "  cellproj render demo:sphere -o orbit.png --orbit 360 --frames 24 --stats stats.json\n";
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
     cellproj::cli::add_info_command(app);
     cellproj::cli::add_check_command(app);
     cellproj::cli::add_tetrahedralize_command(app);
+    cellproj::cli::add_trade_command(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::RuntimeError& outcome) {  // a command's own exit code, its words are said

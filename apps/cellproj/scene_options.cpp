@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "classify/presets.hpp"
+#include "mesh/error.hpp"
+#include "mesh/scalar_field.hpp"
+
+namespace cellproj::cli {
+
+namespace {
+
+glm::dvec3 vector3(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+ImageSize parse_size(const std::string& text) {
+    ImageSize size;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) != 2) {
+        throw Error({ErrorKind::option, "--size", "WIDTHxHEIGHT, such as 800x600", text, ""});
+    }
+    validate(size, "--size");
+    return size;
+}
+
+// The mean length of the rays through a mesh over all that meet its box: 4 · volume / surface of the box (Cauchy). Thin and sparse
+// meshes get more extinction by it than compact ones of the same diagonal.
+double mean_path(const TetMesh& mesh) {
+    double volume = 0;
+    for (CellId cell = 0; cell < mesh.tets.size(); ++cell) volume += std::abs(signed_volume(mesh, cell));
+    const Bounds box = bounds(mesh.points);
+    const glm::dvec3 edge = box.high - box.low;
+    const double surface = 2 * (edge.x * edge.y + edge.y * edge.z + edge.z * edge.x);
+    return volume > 0 && surface > 0 ? 4 * volume / surface : box.diagonal();
+}
+
+std::string in_words(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", number);
+    return text;
+}
+
+struct ColorRange {
+    double low, high;
+};
+
+// --range, or what most of the field lies in: the 1 % at each end are outliers more often than flow.
+ColorRange choose_range(const SceneOptions& options, const ScalarField& field) {
+    if (!options.range.empty()) return {options.range[0], options.range[1]};
+    const ColorRange most{quantile(field.values, 0.01), quantile(field.values, 0.99)};
+    if (most.low < most.high) return most;
+    const auto whole = range(field.values);
+    return {whole.low, whole.high};
+}
+
+TransferFunction preset_transfer(const SceneOptions& options, const Input& input, const ScalarField& field) {
+    const auto [low, high] = choose_range(options, field);
+    const bool log = options.axis == "log";
+    if (log && !(low > 0)) {
+        throw Error({ErrorKind::option, "--axis log", "a range above 0",
+                     in_words(low) + " .. " + in_words(high) + " of field \"" + field.name + '"',
+                     "give --range LOW,HIGH with LOW > 0"});
+    }
+    // A cube's diagonal is 2.6 times its mean path.
+    return default_transfer_function(low, high, 2.6 * mean_path(*input.mesh), options.colors,
+                                     log ? ScalarAxis::log : ScalarAxis::linear);
+}
+
+std::shared_ptr<const TransferFunction> choose_transfer(const SceneOptions& options, const Input& input,
+                                                        const ScalarField& field) {
+    const bool from_scene = input.transfer && options.field.empty() && !options.colors_chosen;
+    const TransferFunction transfer = !options.transfer.empty() ? read_transfer_function(options.transfer)
+                                      : from_scene              ? *input.transfer
+                                                                : preset_transfer(options, input, field);
+    return std::make_shared<TransferFunction>(with_scaled_extinction(transfer, options.opacity_scale));
+}
+
+// What can be refused without a mesh.
+void check_colors(const SceneOptions& options) {
+    preset_colors(options.colors, 0, 1, ScalarAxis::linear, "--colors");
+    if (options.range.empty()) return;
+    const double low = options.range[0], high = options.range[1];
+    if (!(low <= high && std::max(-low, high) <= 1e150)) {
+        throw Error({ErrorKind::option, "--range", "LOW,HIGH with LOW ≤ HIGH, of magnitude up to 1e150",
+                     in_words(low) + "," + in_words(high), "correct it"});
+    }
+}
+
+// Cell fields are exact as constants; averaged to the points they look smooth.
+ScalarField choose_field(const SceneOptions& options, const Input& input) {
+    ScalarField field = select_scalar(*input.mesh, options.field, input.name);
+    if (options.nan) field = with_finite_values(std::move(field), *options.nan);
+    const bool averaged = field.location == FieldLocation::cells && options.cell_values == "averaged";
+    return averaged ? averaged_to_points(*input.mesh, field) : field;
+}
+
+void warn_of_values(const ScalarField& field) {
+    const std::size_t bad = range(field.values).not_finite;
+    if (bad == 0) return;
+    std::fprintf(stderr, "cellproj: warning: field \"%s\": %zu of %zu values are not finite; cells that touch them are left out\n",
+                 field.name.c_str(), bad, field.values.size());
+}
+
+}  // namespace
+
+SceneOptions::SceneOptions() : colors(preset_names().front()) {}
+
+ImageSize require_possible(const SceneOptions& options) {
+    check_colors(options);
+    return parse_size(options.size);
+}
+
+LoadedScene load_scene(const SceneOptions& options) {
+    Input input = options.tetrahedralize ? load_filled(options.input.file, options.surface) : load(options.input);
+    const auto field = std::make_shared<const ScalarField>(choose_field(options, input));
+    warn_of_values(*field);
+    Scene scene{input.mesh, field, choose_transfer(options, input, *field)};
+    return {std::move(input), std::move(scene)};
+}
+
+std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& input, ImageSize size, bool turn) {
+    std::vector<Camera> cameras;
+    if (!options.camera.empty()) {
+        cameras = read_cameras(options.camera);
+    } else if (input.camera) {
+        cameras = {*input.camera};
+    } else {
+        const auto frame = turn ? frame_sphere : frame_bounds;
+        cameras = {frame(bounds(input.mesh->points),
+                         options.projection == "parallel" ? Camera::Projection::parallel
+                                                          : Camera::Projection::perspective,
+                         vector3(options.from), vector3(options.up), static_cast<double>(size.width) / size.height)};
+        validate(cameras.front(), "--from, --up");
+    }
+    return cameras;
+}
+
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+    add_input_options(command, options.input);
+    command.add_option("--field", options.field, "The field to draw (default: the first); vectors by magnitude, or U:x, U:y, U:z");
+    command.add_option("--cell-values", options.cell_values, "How cell fields are drawn: constant in a cell, or averaged to the points")
+        ->check(CLI::IsMember({"constant", "averaged"}))->capture_default_str();
+    CLI::Option* transfer = command.add_option("--transfer", options.transfer,
+                                                "Transfer function (JSON), FILE#NAME for one of several; default: --colors and --range");
+    std::string presets;
+    for (const std::string& name : preset_names()) presets += (presets.empty() ? "" : ", ") + name;
+    const std::vector<CLI::Option*> chosen{
+        command.add_option("--colors", options.colors, "Colours by name: " + presets)->capture_default_str(),
+        command.add_option("--range", options.range,
+                            "Scalars LOW,HIGH of the first and last colour; default: the field's 1-99 % range")
+            ->expected(2)->delimiter(','),
+        command.add_option("--axis", options.axis,
+                            "What colour and opacity are spread over: the scalar (linear) or its logarithm (log)")
+            ->check(CLI::IsMember({"linear", "log"}))->capture_default_str()};
+    for (CLI::Option* option : chosen)
+        option->excludes(transfer)->each([&options](const std::string&) { options.colors_chosen = true; });
+    command.add_option("--opacity-scale", options.opacity_scale, "Multiplies the extinction of any transfer function")
+        ->check(CLI::Range(0.0, 1e9))->capture_default_str();
+    CLI::Option* camera = command.add_option("--camera", options.camera, "Camera or array of cameras (JSON)");
+    command.add_option("--from", options.from, "Direction from which the whole mesh is seen: X,Y,Z")
+        ->expected(3)->delimiter(',')->capture_default_str()->excludes(camera);
+    command.add_option("--up", options.up, "What appears upwards: X,Y,Z")
+        ->expected(3)->delimiter(',')->capture_default_str()->excludes(camera);
+    command.add_option("--projection", options.projection, "parallel or perspective")
+        ->check(CLI::IsMember({"parallel", "perspective"}))->capture_default_str()->excludes(camera);
+    command.add_option("--size", options.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    command.add_option("--nan", options.nan, "Draw values that are not finite (NaN) as this one; default: leave their cells out")
+        ->check(finite_number());
+    CLI::Option* tetrahedralize = command.add_flag(
+        "--tetrahedralize", options.tetrahedralize, "FILE is a surface: fill it with tetrahedra first, and render the inside");
+    for (CLI::Option* option : add_surface_options(command, options.surface, "a regular cell with edges of 1/40 of the diagonal"))
+        option->needs(tetrahedralize);
+}
+
+}  // namespace cellproj::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is drawn and from where: the options that `render` and `trade` share.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "input.hpp"
+#include "project/camera.hpp"
+#include "render/scene.hpp"
+#include "surface_input.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace cellproj::cli {
+
+struct SceneOptions {
+    SceneOptions();
+
+    InputOptions input;
+    bool tetrahedralize = false;
+    SurfaceOptions surface;
+    std::filesystem::path camera, transfer;
+    std::string field, projection = "perspective", size = "512x512", cell_values = "constant";
+    std::vector<double> from{-1, -2, 1}, up{0, 0, 1};
+    std::optional<double> nan;
+    std::string colors, axis = "linear";
+    std::vector<double> range;  // empty, or low and high
+    double opacity_scale = 1;
+    bool colors_chosen = false;  // by any of --colors, --range, --axis
+};
+
+// Into `options`, which must live as long as the command.
+void add_scene_options(CLI::App& command, SceneOptions& options);
+
+// What can be refused without reading the mesh: throws Error (option). The size of the picture.
+ImageSize require_possible(const SceneOptions& options);
+
+struct LoadedScene {
+    Input input;
+    Scene scene;
+};
+
+// Reads the mesh and chooses field and transfer function; warns of values that are not finite. Throws Error.
+LoadedScene load_scene(const SceneOptions& options);
+
+// The cameras of --camera or of the embedded scene, or one that sees the mesh, from every side of it if it is to `turn`.
+std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& input, ImageSize size, bool turn);
+
+}  // namespace cellproj::cli
