@@ -26,7 +26,7 @@ struct Entry {
 // cividis: Jamie Nuñez, Christopher Anderton, Ryan Renslow, "Optimizing colormaps with consideration for color vision
 //   deficiency to enable accurate interpretation of scientific data", PLoS ONE 13(7), 2018; as matplotlib distributes it.
 // turbo: Anton Mikhailov, "Turbo, An Improved Rainbow Colormap for Visualization", Google, 2019; the table is
-//   Copyright 2019 Google LLC, SPDX-License-Identifier: Apache-2.0.
+//   Copyright 2019 Google LLC, SPDX-License-Identifier: Apache-2.0 (LICENSE-turbo). A selection of its entries, unchanged.
 
 constexpr std::array<Entry, 23> viridis{{
     {0, 0.267004, 0.004874, 0.329415}, {7, 0.276022, 0.044167, 0.370164}, {20, 0.283197, 0.11568, 0.436115},
