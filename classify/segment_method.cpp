@@ -3,6 +3,7 @@
 
 #include <cassert>
 
+#include "classify/piece_table.hpp"
 #include "classify/preintegration_table.hpp"
 
 namespace cellproj {
@@ -21,6 +22,21 @@ private:
     PreintegrationTable table_;
 };
 
+class PieceWalk : public SegmentMethod {
+public:
+    PieceWalk(const Method& method, const TransferFunction& transfer, double max_length)
+        : table_(make_piece_table(transfer)), limits_(walk_limits(method, table_, max_length)) {}
+
+    Light light(double s_f, double s_b, double length) const override {
+        return walk_segment(table_, limits_, s_f, s_b, length);
+    }
+    std::size_t table_bytes() const override { return table_.bytes(); }
+
+private:
+    PieceTable table_;
+    WalkLimits limits_;
+};
+
 }  // namespace
 
 std::unique_ptr<SegmentMethod> make_segment_method(const Method& method, const TransferFunction& transfer,
@@ -29,6 +45,9 @@ std::unique_ptr<SegmentMethod> make_segment_method(const Method& method, const T
     switch (method.kind) {
         case MethodKind::preint3d:
             return std::make_unique<Preint3d>(method, transfer, max_length);
+        case MethodKind::integral:
+        case MethodKind::exact:
+            return std::make_unique<PieceWalk>(method, transfer, max_length);
         default:
             assert(false && "no such method");
             return nullptr;

@@ -55,10 +55,10 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
 }
 
 const Program& GlRenderer::program_for(bool perspective) {
-    const auto key = std::pair(method_.kind, perspective);
+    const auto key = std::pair(&shader_->source(), perspective);
     const auto known = programs_.find(key);
     if (known != programs_.end()) return known->second;
-    return programs_[key] = Program(shaders::cell_vert, shaders::cell_frag + shader_->source(),
+    return programs_[key] = Program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shader_->source(),
                                     perspective ? "#define PERSPECTIVE\n" : "");
 }
 

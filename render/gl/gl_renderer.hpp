@@ -35,7 +35,7 @@ private:
     void draw(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
 
     OsmesaContext context_;
-    std::map<std::pair<MethodKind, bool>, Program> programs_;  // by kind and whether in perspective
+    std::map<std::pair<const std::string*, bool>, Program> programs_;  // by the method's source and whether in perspective
     TriangleStream stream_;
     FloatTarget target_;
     std::optional<PreparedScene> prepared_;

@@ -20,7 +20,11 @@ class SegmentShader {
 public:
     virtual ~SegmentShader() = default;
 
+    // One object for each text, alive as long as the program runs: compiled shaders are known by its address.
     virtual const std::string& source() const = 0;
+    // What goes behind shaders/cell.vert: void prepare_cell(float low, float high), called at every vertex with the lowest and highest
+    // scalar of its cell, with flat outputs for the fragments.
+    virtual const std::string& vertex_source() const;
     // Sets the uniforms of `program`, which holds the source, and binds the textures.
     virtual void bind(const Program& program) const = 0;
     virtual std::size_t table_bytes() const = 0;
@@ -31,6 +35,8 @@ std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const T
                                                    double max_length, double mean_length);
 
 // One per kind, in methods/.
+std::unique_ptr<SegmentShader> make_piece_shader(const Method& method, const TransferFunction& transfer,  // integral, exact
+                                                 double max_length);
 std::unique_ptr<SegmentShader> make_preint3d_shader(const Method& method, const TransferFunction& transfer,
                                                     double max_length);
 
