@@ -37,11 +37,10 @@ public:
 
     // visible()[cell] is 0 for cells that add nothing to any picture: no emission and no extinction over the range of
     // their scalars, or a scalar that is not finite.
-    // The field's range is looked at in 4096 bins: a few such cells may be 1.
     const std::vector<std::uint8_t>& visible() const { return visible_; }
 
-    // Another transfer function over the same mesh and field: only the visibility is found anew, from bins: 0.2 ms per
-    // million cells and core.
+    // Another transfer function over the same mesh and field: only the visibility is found anew, for most cells from bins
+    // of the field's range.
     void set_transfer(std::shared_ptr<const TransferFunction> transfer);
 
     // The bins of a cell's lowest and highest scalar; low > high where one is not finite.

@@ -75,6 +75,18 @@ void Table(benchmark::State& state) {
     }
 }
 
+void Update(benchmark::State& state) {  // another transfer function for a scene that is prepared
+    Scene s = scene(static_cast<int>(state.range(0)));
+    const auto renderer = make_renderer(Backend::gl_osmesa);
+    const Quality quality{.method = parse_method("integral")};
+    renderer->prepare(s, quality);
+    for (auto _ : state) {
+        s.transfer = std::make_shared<TransferFunction>(ramp());
+        renderer->prepare(s, quality);
+    }
+    per_cell(state, s);
+}
+
 void Sort(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
     VisibilitySorter sorter(*s.mesh);
@@ -113,6 +125,7 @@ void Frame(benchmark::State& state) {  // camera to pixels in memory
 BENCHMARK(Adjacency)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Prepare)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Table)->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(Update)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Sort)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Project)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Frame)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();

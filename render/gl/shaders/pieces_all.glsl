@@ -34,9 +34,9 @@ vec4 light_of_segment(float s_front, float s_back, float segment) {
         float share = taken / steps;
         float root = sqrt(max(0.0, (1.0 - r) * (1.0 - r) + 4.0 * r * share));
         float behind = whole ? 1.0 : min(1.0, 2.0 * share / (1.0 - r + root));
-        vec4 t = begin + (behind - begin) * position;
+        vec4 t = begin + (behind - begin) * gauss_position;
         vec4 q = is_density > 0.0 ? depth * (1.0 - r + 2.0 * r * t) : vec4(part);
-        vec4 light = q * ((behind - begin) * weight) * exp(-depth_before - depth * t * (1.0 - r + r * t));
+        vec4 light = q * ((behind - begin) * gauss_weight) * exp(-depth_before - depth * t * (1.0 - r + r * t));
         t = mix(vec4(at.x), vec4(at.y), t);
         color += dot(light, 1.0 - t) * color_begin + dot(light, t) * color_end;
 

@@ -30,9 +30,9 @@ void add_part(vec4 front, vec4 back, float part) {
         float share = k / steps;
         float root = sqrt(max(0.0, (1.0 - r) * (1.0 - r) + 4.0 * r * share));
         float behind = k < steps ? min(1.0, 2.0 * share / (1.0 - r + root)) : 1.0;
-        vec4 t = begin + (behind - begin) * position;
+        vec4 t = begin + (behind - begin) * gauss_position;
         vec4 q = is_density > 0.0 ? depth * (1.0 - r + 2.0 * r * t) : vec4(part);
-        vec4 light = q * ((behind - begin) * weight) * exp(-depth_before - depth * t * (1.0 - r + r * t));
+        vec4 light = q * ((behind - begin) * gauss_weight) * exp(-depth_before - depth * t * (1.0 - r + r * t));
         weights += vec2(dot(light, 1.0 - t), dot(light, t));
         begin = behind;
         if (!(k < steps) || depth_before + depth * share >= deepest) break;
