@@ -28,7 +28,8 @@ struct PieceTable {
     static constexpr std::size_t texels_per_piece = 5;
 
     OpticalModel model = OpticalModel::density;
-    // #pieces by texels_per_piece by 4. The pieces cover 0..1 in ascending order; one more, from 1 to 2, holds the value at 1 itself. Texels of a piece:
+    // #pieces by texels_per_piece by 4. The pieces cover 0..1 in ascending order; one more, from 1 to 2, holds the value at 1
+    // itself. Texels of a piece:
     //   0  scalar at its begin, at its end, τ at its begin, at its end (limits from inside)
     //   1  colour at its begin, 0
     //   2  colour at its end, 0

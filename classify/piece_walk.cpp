@@ -47,7 +47,8 @@ public:
     }
 
 private:
-    // From s to `end`, both inside the piece: steps of equal optical depth, found by solving D(t) = depth·((1 − r)·t + r·t²), a Gauss rule in each.
+    // From s to `end`, both inside the piece: steps of equal optical depth, found by solving D(t) = depth·((1 − r)·t + r·t²),
+    // a Gauss rule in each.
     void add_part(std::size_t piece, double s, double end) {
         const glm::dvec4 ends = table_.texel(piece, 0);
         const double width = ends.y - ends.x;

@@ -22,8 +22,8 @@ public:
 
     // One object for each text, alive as long as the program runs: compiled shaders are known by its address.
     virtual const std::string& source() const = 0;
-    // What goes behind shaders/cell.vert: void prepare_cell(float low, float high), called at every vertex with the lowest and highest
-    // scalar of its cell, with flat outputs for the fragments.
+    // What goes behind shaders/cell.vert: void prepare_cell(float low, float high), called at every vertex with the lowest
+    // and highest scalar of its cell, with flat outputs for the fragments. Unless overridden it does nothing.
     virtual const std::string& vertex_source() const;
     // Sets the uniforms of `program`, which holds the source, and binds the textures.
     virtual void bind(const Program& program) const = 0;
