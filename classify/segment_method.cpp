@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "classify/half_opacity.hpp"
+#include "classify/piece_table.hpp"
 #include "classify/segment_methods.hpp"
 #include "classify/shirley_tuchman.hpp"
 
@@ -24,6 +25,21 @@ public:
 
 private:
     std::unique_ptr<SegmentMethod> method_;
+};
+
+class PieceWalk : public SegmentMethod {
+public:
+    PieceWalk(const Method& method, const TransferFunction& transfer, double max_length)
+        : table_(make_piece_table(transfer)), limits_(walk_limits(method, table_, max_length)) {}
+
+    Light light(double s_f, double s_b, double length) const override {
+        return walk_segment(table_, limits_, s_f, s_b, length);
+    }
+    std::size_t table_bytes() const override { return table_.bytes(); }
+
+private:
+    PieceTable table_;
+    WalkLimits limits_;
 };
 
 }  // namespace
@@ -48,6 +64,9 @@ std::unique_ptr<SegmentMethod> make_segment_method(const Method& method, const T
         case MethodKind::preint2d_exp:
         case MethodKind::preint3d:
             return make_table_method(method, transfer, max_length, mean_length);
+        case MethodKind::integral:
+        case MethodKind::exact:
+            return std::make_unique<PieceWalk>(method, transfer, max_length);
         default:
             assert(false && "no such method");
             return nullptr;

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -48,22 +49,90 @@ double find_mean_chord(const TetMesh& mesh, double unit) {
     return chord > 0.0 ? chord : 1.0;  // flat cells only: nothing is drawn
 }
 
-std::vector<std::uint8_t> find_visible(const Scene& scene) {
-    const TetMesh& mesh = *scene.mesh;
-    std::vector<std::uint8_t> visible(mesh.tets.size());
-    const auto look = [&](const oneapi::tbb::blocked_range<std::size_t>& cells) {
-        for (std::size_t c = cells.begin(); c != cells.end(); ++c) {
-            double low = scene.field->at(mesh, static_cast<CellId>(c), 0), high = low, sum = low;
-            for (int corner = 1; corner < 4; ++corner) {
-                const double s = scene.field->at(mesh, static_cast<CellId>(c), corner);
-                low = std::min(low, s);
-                high = std::max(high, s);
-                sum += 0.25 * s;
-            }
-            visible[c] = std::isfinite(sum) && scene.transfer->visible(low, high);
-        }
+struct ScalarInterval {
+    double low, high;
+};
+
+// The scalars of a cell; nothing when one is not finite.
+std::optional<ScalarInterval> scalars_of(const Scene& scene, std::size_t cell) {
+    double low = scene.field->at(*scene.mesh, static_cast<CellId>(cell), 0), high = low, sum = low;
+    for (int corner = 1; corner < 4; ++corner) {
+        const double s = scene.field->at(*scene.mesh, static_cast<CellId>(cell), corner);
+        low = std::min(low, s);
+        high = std::max(high, s);
+        sum += 0.25 * s;
+    }
+    return std::isfinite(sum) ? std::optional(ScalarInterval{low, high}) : std::nullopt;
+}
+
+// The field's range in bins: another transfer function is asked once per bin and, where that does not tell, for a cell.
+constexpr std::uint16_t bin_count = 4096;
+
+std::uint16_t bin_of(const SceneUnits& units, double s) {
+    return static_cast<std::uint16_t>(std::clamp(units.normalized(s), 0.0, 1.0) * (bin_count - 1));
+}
+
+template <class Body>
+void for_all(std::size_t count, Body body) {
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    oneapi::tbb::parallel_for(Range(0, count, 4096), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+    });
+}
+
+std::vector<PreparedScene::BinRange> find_bins(const Scene& scene, const SceneUnits& units) {
+    std::vector<PreparedScene::BinRange> bins(scene.mesh->tets.size());
+    for_all(bins.size(), [&](std::size_t cell) {
+        const auto s = scalars_of(scene, cell);
+        if (s) bins[cell] = {bin_of(units, s->low), bin_of(units, s->high)};
+    });
+    return bins;
+}
+
+// Which scalars of a bin can be seen: for each bin the next one, itself included, where some can, and where all can;
+// bin_count where none follows.
+struct VisibleBins {
+    std::vector<std::uint16_t> some, all;
+};
+
+VisibleBins find_visible_bins(const TransferFunction& transfer, const SceneUnits& units) {
+    std::vector<std::uint8_t> seen(bin_count), unseen(bin_count);
+    const auto mark = [&](double begin, double end, bool visible) {
+        if (end < units.scalar_low || begin > units.scalar_high) return;
+        const std::uint16_t first = bin_of(units, std::max(begin, units.scalar_low));
+        const std::uint16_t last = bin_of(units, std::min(end, units.scalar_high));
+        auto& bins = visible ? seen : unseen;
+        std::fill(bins.begin() + first, bins.begin() + last + 1, std::uint8_t{1});
     };
-    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, visible.size(), 4096), look);
+    const bool emitter = transfer.model() == OpticalModel::emitter;
+    const auto shines = [](const glm::dvec3& color) { return std::max({color.x, color.y, color.z}) > 0.0; };
+    for (const LinearPiece& piece : transfer.pieces()) {
+        mark(piece.begin, piece.end,
+             std::max(piece.extinction_begin, piece.extinction_end) > 0.0 ||
+                 (emitter && (shines(piece.color_begin) || shines(piece.color_end))));
+    }
+    for (const double s : transfer.breakpoints()) mark(s, s, transfer.visible(s, s));
+
+    VisibleBins next{std::vector<std::uint16_t>(bin_count + 1, bin_count), std::vector<std::uint16_t>(bin_count + 1, bin_count)};
+    for (std::uint16_t b = bin_count; b-- > 0;) {
+        next.some[b] = seen[b] ? b : next.some[b + 1];
+        next.all[b] = seen[b] && !unseen[b] ? b : next.all[b + 1];
+    }
+    return next;
+}
+
+std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& units,
+                                       const std::vector<PreparedScene::BinRange>& bins) {
+    const VisibleBins next = find_visible_bins(*scene.transfer, units);
+    std::vector<std::uint8_t> visible(bins.size());
+    for_all(bins.size(), [&](std::size_t cell) {
+        const auto [low, high] = bins[cell];
+        if (low > high || next.some[low] > high) return;
+        // A cell has all scalars of the bins between its outermost ones, but only some of those two.
+        const bool surely = next.all[low] <= high || next.some[low + 1] < high;
+        const auto s = surely ? std::nullopt : scalars_of(scene, cell);
+        visible[cell] = surely || scene.transfer->visible(s->low, s->high);
+    });
     return visible;
 }
 
@@ -72,11 +141,12 @@ std::vector<std::uint8_t> find_visible(const Scene& scene) {
 PreparedScene::PreparedScene(Scene scene)
     : scene_(std::move(scene)), units_(find_units(scene_)), sorter_(*scene_.mesh),
       mean_chord_(find_mean_chord(*scene_.mesh, units_.length)),
-      visible_(find_visible(scene_)) {}
+      bins_(find_bins(scene_, units_)),
+      visible_(find_visible(scene_, units_, bins_)) {}
 
 void PreparedScene::set_transfer(std::shared_ptr<const TransferFunction> transfer) {
     scene_.transfer = std::move(transfer);
-    visible_ = find_visible(scene_);
+    visible_ = find_visible(scene_, units_, bins_);
 }
 
 }  // namespace cellproj

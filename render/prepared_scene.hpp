@@ -39,14 +39,21 @@ public:
     // their scalars, or a scalar that is not finite.
     const std::vector<std::uint8_t>& visible() const { return visible_; }
 
-    // Another transfer function over the same mesh and field: only the visibility is found anew.
+    // Another transfer function over the same mesh and field: only the visibility is found anew, for most cells from bins
+    // of the field's range.
     void set_transfer(std::shared_ptr<const TransferFunction> transfer);
+
+    // The bins of a cell's lowest and highest scalar; low > high where one is not finite.
+    struct BinRange {
+        std::uint16_t low = 1, high = 0;
+    };
 
 private:
     Scene scene_;
     SceneUnits units_;
     VisibilitySorter sorter_;
     double mean_chord_;
+    std::vector<BinRange> bins_;  // #T
     std::vector<std::uint8_t> visible_;
 };
 

@@ -76,6 +76,18 @@ void Table(benchmark::State& state) {
     }
 }
 
+void Update(benchmark::State& state) {  // another transfer function for a scene that is prepared
+    Scene s = scene(static_cast<int>(state.range(0)));
+    const auto renderer = make_renderer(Backend::gl_osmesa);
+    const Quality quality{.method = parse_method("integral")};
+    renderer->prepare(s, quality);
+    for (auto _ : state) {
+        s.transfer = std::make_shared<TransferFunction>(ramp());
+        renderer->prepare(s, quality);
+    }
+    per_cell(state, s);
+}
+
 void Sort(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
     VisibilitySorter sorter(*s.mesh);
@@ -129,6 +141,7 @@ void FrameByNodes(benchmark::State& state) {
 BENCHMARK(Adjacency)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Prepare)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Table)->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(Update)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Sort)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Project)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(FrameByNodes)->Arg(2)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -107,7 +107,7 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
 }
 
 const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
-    const std::string key = defines + fragment;
+    const std::string key = defines + vertex + fragment;
     const auto known = programs_.find(key);
     if (known != programs_.end()) return known->second;
     return programs_[key] = Program(vertex, fragment, defines);
@@ -161,7 +161,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 void GlRenderer::draw_segments(const CellStream& cells, std::span<const CellId> order, Statistics& statistics) {
     const bool perspective = cells.transform().perspective();
     const Program& segments =
-        program(shaders::cell_vert, shaders::cell_frag + shader_->source(),
+        program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shader_->source(),
                 std::string(perspective ? "#define PERSPECTIVE\n" : "") + blending_define(method_));
     if (perspective) set_camera(segments, cells);
     shader_->bind(segments);

@@ -36,7 +36,7 @@ private:
     void draw_lit(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
 
     OsmesaContext context_;
-    std::map<std::string, Program> programs_;  // by the text of the fragment shader and the defines
+    std::map<std::string, Program> programs_;  // by their text
     TriangleStream segments_, lit_;
     Target target_;
     std::optional<PreparedScene> prepared_;

@@ -3,7 +3,11 @@
 
 #include <cassert>
 
+#include "render/gl/shaders.hpp"
+
 namespace cellproj::gl {
+
+const std::string& SegmentShader::vertex_source() const { return shaders::no_cell_glsl; }
 
 std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const TransferFunction& transfer,
                                                    double max_length, double mean_length) {
@@ -20,6 +24,9 @@ std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const T
             return make_preint2d_exp_shader(method, transfer);
         case MethodKind::preint3d:
             return make_preint3d_shader(method, transfer, max_length);
+        case MethodKind::integral:
+        case MethodKind::exact:
+            return make_piece_shader(method, transfer, max_length);
         default:
             assert(false && "no such method");
             return nullptr;

@@ -24,6 +24,9 @@ public:
     // Makes it the shader of another function, in the same scene units, with the same source(), at less cost than a new
     // one. False, and nothing has changed, when it cannot.
     virtual bool update([[maybe_unused]] const TransferFunction& transfer) { return false; }
+    // What goes behind shaders/cell.vert: void prepare_cell(float low, float high), called at every vertex with the lowest
+    // and highest scalar of its cell, with flat outputs for the fragments. Unless overridden it does nothing.
+    virtual const std::string& vertex_source() const;
     // Sets the uniforms of `program`, which holds the source, and binds the textures.
     virtual void bind(const Program& program) const = 0;
     virtual std::size_t table_bytes() const = 0;
@@ -35,6 +38,8 @@ std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const T
 
 // One per family of methods, in methods/.
 std::unique_ptr<SegmentShader> make_sampled_shader(const Method& method, const TransferFunction& transfer);
+std::unique_ptr<SegmentShader> make_piece_shader(const Method& method, const TransferFunction& transfer,  // integral, exact
+                                                 double max_length);
 std::unique_ptr<SegmentShader> make_preint2d_shader(const Method& method, const TransferFunction& transfer,
                                                     double mean_length);
 std::unique_ptr<SegmentShader> make_preint2d_exp_shader(const Method& method, const TransferFunction& transfer);

@@ -7,8 +7,9 @@
 
 namespace cellproj::gl::shaders {
 
-extern const std::string cell_vert;
-extern const std::string cell_frag;      // needs one of the following behind it
+extern const std::string cell_vert;         // needs a prepare_cell behind it
+extern const std::string cell_frag;         // needs a light_of_segment behind it
+extern const std::string no_cell_glsl;      // a prepare_cell that does nothing
 extern const std::string sampled_glsl;   // behind it: average, homogeneous, linear or stein
 extern const std::string average_glsl;
 extern const std::string homogeneous_glsl;
@@ -16,6 +17,10 @@ extern const std::string linear_glsl;
 extern const std::string stein_glsl;
 extern const std::string preint2d_glsl;
 extern const std::string preint2d_exp_glsl;
+extern const std::string pieces_glsl;       // integral and exact: what the next three share
+extern const std::string pieces_cell_glsl;  // prepare_cell for
+extern const std::string pieces_all_glsl;   // few pieces, one by one
+extern const std::string pieces_walk_glsl;  // many pieces, thin ones at once; needs no prepare_cell
 extern const std::string preint3d_glsl;
 extern const std::string preint3d_linear_glsl;
 extern const std::string lit_vert;

@@ -11,7 +11,11 @@ out vec2 v_base;
 out vec3 v_ridges;
 flat out vec4 v_cell;
 
+// What the method wants to know of a cell between two scalars.
+void prepare_cell(float low, float high);
+
 void main() {
+    prepare_cell(cell.y, cell.z);
     v_base = base;
     v_ridges = ridges;
     v_cell = cell;
