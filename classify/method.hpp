@@ -38,7 +38,7 @@ enum class Blending { once, half };
 
 // One method with its choices; those that its kind has no use for keep their defaults.
 struct Method {
-    MethodKind kind = MethodKind::preint3d;
+    MethodKind kind = MethodKind::integral;
     int size = 64;            // texels per axis of a table; steps of `linear`
     double tolerance = 1e-5;  // of `exact`: largest error of a colour channel or the opacity of a segment
     TableScale scale = TableScale::logarithmic;

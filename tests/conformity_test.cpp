@@ -295,6 +295,7 @@ TEST_P(ConformityOf, RealMesh) {
     const std::filesystem::path file = std::filesystem::path(CELLPROJ_SHARED_DATA) / GetParam().name;
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "needs " << file;
     const Dataset dataset = read(file);
+    if (CELLPROJ_SANITIZED && dataset.points.size() > 15000) GTEST_SKIP() << "too large for unoptimized maps of faces";
     TetrahedralizeReport report;
     const TetMesh mesh = tetrahedralize(dataset, &report);
     expect_conformal(dataset, mesh);

@@ -202,7 +202,7 @@ TEST(WilhelmsVanGelder, Table2Drawn) {
 // ---- RKE00: the time does not depend on the transfer function, because what is drawn does not: the same triangles, by
 // the same instructions, over a table of the same size.
 TEST(RoettgerKrausErtl, TheWorkDoesNotDependOnTheTransferFunction) {
-    const Method method{.size = 16};
+    const Method method{.kind = MethodKind::preint3d, .size = 16};
     std::vector<ExtinctionNode> many;
     for (int i = 0; i < 10000; ++i) many.push_back({i / 9999.0, i % 2 == 0 ? 0.1 : 8.0});
     const auto function = [](const std::vector<ExtinctionNode>& nodes) {

@@ -161,7 +161,7 @@ TEST_P(EitherProjection, LinearFieldWithARamp) {
         const Camera camera = view_of_unit_cube(GetParam());
         const Scene scene = scene_of(grid_mesh(cells, 0.2, 5), linear, ramp());
         const Truth truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
-        EXPECT_LT(error_against(truth, renderer().render(scene, camera, small, {.method = {.size = 64}})), 2e-3) << cells;
+        EXPECT_LT(error_against(truth, renderer().render(scene, camera, small, {.method = {.kind = MethodKind::preint3d, .size = 64}})), 2e-3) << cells;
     }
 }
 
@@ -459,7 +459,7 @@ TEST(Renderer, KeepsNothingOfAnotherScene) {
 TEST(Renderer, StatisticsAddUp) {
     const Fixture fixture;
     Statistics s;
-    renderer().render(scene_of(fixture.mesh, linear, ramp()), fixture.camera, small, {.method = {.size = 32}}, &s);
+    renderer().render(scene_of(fixture.mesh, linear, ramp()), fixture.camera, small, {.method = {.kind = MethodKind::preint3d, .size = 32}}, &s);
     EXPECT_EQ(s.counts.cells, fixture.mesh.tets.size());
     EXPECT_EQ(s.counts.drawn + s.counts.culled, s.counts.cells);
     EXPECT_GT(s.counts.triangles, s.counts.drawn);  // one or two each

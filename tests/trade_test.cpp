@@ -74,7 +74,7 @@ TEST(Trade, MeasuresErrorAndMemoryOfEachMethod) {
     const ImageSize size{64, 64};
     const Camera camera = frame_bounds({glm::dvec3(0), glm::dvec3(1)}, Camera::Projection::perspective, {1, 2, 1}, {0, 0, 1}, 1.0);
     const auto truths = Reference(scene).picture(camera, size, 1.0 / 512);
-    const std::vector<Quality> qualities{{.method = {.size = 8}}, {.method = {.size = 64}}};
+    const std::vector<Quality> qualities{{.method = {.kind = MethodKind::preint3d, .size = 8}}, {.method = {.kind = MethodKind::preint3d, .size = 64}}};
     const auto renderer = make_renderer(Backend::gl_osmesa);
     std::size_t frames = 0;
     const auto rows = measure_trade(*renderer, scene, camera, size, qualities, truths,
