@@ -38,7 +38,9 @@ void run_trade(const TradeCommandOptions& options) {
     for (const auto& file : {options.page, options.csv, options.json}) {
         if (!file.empty()) require_writable(file);
     }
-    const auto [input, scene] = load_scene(options.scene);
+    const LoadedScene loaded = load_scene(options.scene);
+    const Scene& scene = loaded.scene;
+    const Input& input = loaded.input;
     const std::vector<Camera> cameras = choose_cameras(options.scene, input, size, false);
     if (cameras.size() != 1) {
         throw Error({ErrorKind::option, "--camera", "one camera", std::to_string(cameras.size()), "give one of them"});

@@ -3,5 +3,5 @@
 #include "tests/fuzz/fuzz_reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    return cellproj::fuzz_one_file(cellproj::read_gmsh, ".msh", bytes, size);
+    return cellproj::fuzz_one_file([](const auto& file) { return cellproj::read_gmsh(file); }, ".msh", bytes, size);
 }

@@ -3,5 +3,5 @@
 #include "tests/fuzz/fuzz_reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    return cellproj::fuzz_two_files(cellproj::read_tetgen, ".node", ".ele", bytes, size);
+    return cellproj::fuzz_two_files([](const auto& file) { return cellproj::read_tetgen(file); }, ".node", ".ele", bytes, size);
 }
