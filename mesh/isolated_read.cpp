@@ -15,6 +15,8 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <sstream>
+#include <iterator>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -262,6 +264,21 @@ public:
         wait(0);
     }
 
+    // Processor time so far [clock ticks] if it sleeps now; none while it works, or where /proc does not tell.
+    std::optional<unsigned long> ticks_if_asleep() const {
+        std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+        std::string text((std::istreambuf_iterator<char>(file)), {});
+        const std::size_t name_end = text.rfind(')');  // the name may hold anything
+        if (name_end == std::string::npos) return std::nullopt;
+        std::istringstream fields(text.substr(name_end + 1));
+        std::string state, skipped;
+        unsigned long user = 0, system = 0;
+        fields >> state;
+        for (int field = 4; field < 14; ++field) fields >> skipped;
+        if (!(fields >> user >> system) || state != "S") return std::nullopt;
+        return user + system;
+    }
+
     // Its status, or none while it runs. A caller that ignores SIGCHLD has its children reaped by the kernel: their
     // status is lost and counts as 0; what the child sent decides.
     std::optional<int> status_if_ended() { return wait(WNOHANG); }
@@ -282,8 +299,33 @@ private:
 };
 
 struct Outcome {
-    std::optional<int> status;  // none: it ran too long
-    std::uint8_t event = 0;     // the last one
+    std::optional<int> status;    // none: it ran too long
+    std::uint8_t event = 0;       // the last one
+    bool stands_still = false;    // it did nothing at all for a while, and did not end
+};
+
+// Tells a child that waits for a lock for ever: readers start no threads, so nothing can wake it.
+class StandstillWatch {
+public:
+    explicit StandstillWatch(const Child& child) : child_(child) {}
+
+    // Asleep for 3 s without using the processor. Asks /proc every half second at most.
+    bool stands_still() {
+        const auto now = std::chrono::steady_clock::now();
+        if (now < next_) return false;
+        next_ = now + std::chrono::milliseconds(500);
+        const auto ticks = child_.ticks_if_asleep();
+        if (!ticks || ticks != ticks_) {
+            ticks_ = ticks;
+            since_ = now;
+        }
+        return ticks && now - since_ > std::chrono::seconds(3);
+    }
+
+private:
+    const Child& child_;
+    std::optional<unsigned long> ticks_;
+    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now(), since_ = next_;
 };
 
 // Passes the child's percents on until it ends.
@@ -299,7 +341,9 @@ Outcome follow(Child& child, const Descriptor& events, double seconds, const Pro
         return true;
     };
     bool open = true;
+    StandstillWatch watch(child);
     while (!(outcome.status = child.status_if_ended())) {
+        if ((outcome.stands_still = watch.stands_still())) return outcome;
         if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds) return outcome;
         // The end of the pipe tells of the child's end at once; only a child of another thread's read, forked while
         // this pipe was open, can keep it open, so it is not waited for.
@@ -341,25 +385,29 @@ bool blames_us(const std::string& report) {
 
 void run_isolated(const std::filesystem::path& file, std::uintmax_t bytes, const ProgressCallback& progress,
                   const std::function<void(ByteWriter&)>& work, const std::function<void(ByteReader&)>& take) {
-    Channels channels;
-    if (!channels.are_open()) throw_no_child(file, "files in memory", "close some files or programs");
-    const Limits limits = limits_for(bytes);
-    const pid_t pid = fork();
-    if (pid < 0) throw_no_child(file, "a place", "end other processes or free memory");
-    if (pid == 0) run_child(channels, limits, file, work);
-    Child child(pid);
-    channels.events_out.close();  // or the end of the child's would not be seen
-    const Outcome outcome = follow(child, channels.events, limits.seconds, progress);
-    const bool ended_well = outcome.status && WIFEXITED(*outcome.status) && WEXITSTATUS(*outcome.status) == 0;
-    if (!ended_well || (outcome.event != result_ready && outcome.event != error_ready))
-        throw_failure(file, outcome, start_of(channels.printed));
-    Mapping mapping(channels.result);
-    ByteReader reader(
-        mapping.bytes(),
-        [&](const std::string&, const std::string&) { throw_damaged(file, "one that confuses its reader"); },
-        [&](std::string_view read) { mapping.release(read); });
-    if (outcome.event == error_ready) throw take_error(reader);
-    take(reader);
+    constexpr int tries = 2;
+    for (int attempt = 1;; ++attempt) {
+        Channels channels;
+        if (!channels.are_open()) throw_no_child(file, "files in memory", "close some files or programs");
+        const Limits limits = limits_for(bytes);
+        const pid_t pid = fork();
+        if (pid < 0) throw_no_child(file, "a place", "end other processes or free memory");
+        if (pid == 0) run_child(channels, limits, file, work);
+        Child child(pid);
+        channels.events_out.close();  // or the end of the child's would not be seen
+        const Outcome outcome = follow(child, channels.events, limits.seconds, progress);
+        if (outcome.stands_still && attempt < tries) continue;  // forked at a bad moment: some lock was held
+        const bool ended_well = outcome.status && WIFEXITED(*outcome.status) && WEXITSTATUS(*outcome.status) == 0;
+        if (!ended_well || (outcome.event != result_ready && outcome.event != error_ready))
+            throw_failure(file, outcome, start_of(channels.printed));
+        Mapping mapping(channels.result);
+        ByteReader reader(
+            mapping.bytes(),
+            [&](const std::string&, const std::string&) { throw_damaged(file, "one that confuses its reader"); },
+            [&](std::string_view read) { mapping.release(read); });
+        if (outcome.event == error_ready) throw take_error(reader);
+        return take(reader);
+    }
 }
 
 void report_progress(double fraction) {

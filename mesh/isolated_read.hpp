@@ -13,8 +13,8 @@
 //
 // What fork means for a caller of several threads: the child has only the thread that called; locks that another thread
 // held at that moment stay locked in it. malloc and stdio take care of themselves. VTK's own locks are taken by no other
-// thread unless the caller uses VTK elsewhere at the same time; a child that meets a lock held there waits until its time
-// is over and gives an Error. The child starts no threads: VTK's are switched off in it.
+// thread unless the caller uses VTK elsewhere at the same time. A child that stands still for 3 s, as one that meets a
+// lock held there, is ended and the read tried once more. The child starts no threads: VTK's are switched off in it.
 #pragma once
 
 #include <cstdint>

