@@ -17,18 +17,9 @@
 namespace cellproj {
 namespace {
 
+using testing_support::cube_corners;
+using testing_support::single_cell;
 using testing_support::total_volume;
-
-Dataset single_cell(CellKind kind, std::vector<glm::dvec3> points, std::vector<VertexId> vertices) {
-    Dataset dataset;
-    dataset.source = "cell";
-    dataset.points = std::move(points);
-    dataset.cells = {{kind}, {0, vertices.size()}, vertices};
-    return dataset;
-}
-
-const std::vector<glm::dvec3> cube{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                   {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 
 // Volumes of a few units, from at most 30 tetrahedra of rounded coordinates.
 constexpr double volume_tolerance = 1e-9;
@@ -179,7 +170,7 @@ TEST(TetrahedralizeKinds, AHangingNodeGivesNoSliver) {
     // The unit cube with a point in the middle of an edge, moved a little inwards and outwards: two faces have five
     // vertices.
     for (const double depth : {0.0, 1e-9, -1e-9, 1e-3, -1e-3}) {
-        std::vector<glm::dvec3> points = cube;
+        std::vector<glm::dvec3> points = cube_corners;
         points.insert(points.begin(),
                       {0.5, depth, depth});  // between 1 and 2, the lowest id: every fan would start here
         const std::vector<VertexId> stream{6, 5, 1, 4, 3, 2, 0, 4, 5, 6, 7, 8, 5, 1, 0, 2, 6,
@@ -195,7 +186,7 @@ TEST(TetrahedralizeKinds, AHangingNodeGivesNoSliver) {
 
 TEST(TetrahedralizeFields, TheCentreGetsTheMeanOfTheVertices) {
     std::mt19937_64 random(10);
-    Dataset dataset = as_polyhedron(single_cell(CellKind::hexahedron, cube, counted(8)), random);
+    Dataset dataset = as_polyhedron(single_cell(CellKind::hexahedron, cube_corners, counted(8)), random);
     dataset.point_fields = {{"s", 1, {0, 1, 2, 3, 4, 5, 6, 15}}};
     dataset.cell_fields = {{"c", 1, {7}}};
     const TetMesh mesh = tetrahedralize(dataset);

@@ -4,7 +4,6 @@
 #include <limits>
 #include <cstring>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <array>
@@ -17,43 +16,27 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/folder_test.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
+using cellproj::testing_support::FolderTest;
+using cellproj::testing_support::Outcome;
+using cellproj::testing_support::run_program;
 
-struct Outcome {
-    int code = -1;
-    std::string text;  // standard output and error together
-};
-
-class CommandLine : public testing::Test {
+class CommandLine : public FolderTest {
 protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  ("cellproj_cli_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
+        FolderTest::SetUp();
         write("cube.vtk", cube());
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     fs::path path(const std::string& name) const { return folder_ / name; }
 
-    void write(const std::string& name, const std::string& text) const {
-        std::ofstream(path(name), std::ios::binary) << text;
-    }
-
     // Runs cellproj in the test's folder.
     Outcome run(const std::string& arguments, const std::string& environment = "") const {
-        const std::string command =
-            "cd '" + folder_.string() + "' && " + environment + " '" + CELLPROJ_PROGRAM + "' " + arguments + " 2>&1";
-        Outcome outcome;
-        FILE* pipe = popen(command.c_str(), "r");
-        std::array<char, 4096> buffer{};
-        for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) outcome.text.append(buffer.data(), n);
-        const int status = pclose(pipe);
-        outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-        return outcome;
+        return run_program(folder_, arguments, environment);
     }
 
     // Exit 1, the words in the message, and no picture or leftover in the folder.
@@ -82,8 +65,6 @@ protected:
         EXPECT_NE(at, std::string::npos);
         return text.replace(at, what.size(), with);
     }
-
-    fs::path folder_;
 };
 
 TEST_F(CommandLine, RendersAPicture) {

@@ -27,6 +27,7 @@
 
 #include "mesh/error.hpp"
 #include "render/output_file.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace cellproj {
 namespace {
@@ -165,16 +166,8 @@ Image noise(int width, int height) {
     return image;
 }
 
-class ImageFile : public testing::Test {
+class ImageFile : public testing_support::FolderTest {
 protected:
-    void SetUp() override {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(testing::TempDir()) / (std::string("cellproj_image_") + test->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     // Names of all files in the folder, hidden ones, too.
     std::vector<std::string> names() const {
         std::vector<std::string> found;
@@ -183,8 +176,6 @@ protected:
         std::sort(found.begin(), found.end());
         return found;
     }
-
-    fs::path folder_;
 };
 
 using Names = std::vector<std::string>;

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <random>
 
 #include <glm/geometric.hpp>
@@ -22,6 +21,7 @@ namespace cellproj {
 namespace {
 
 using testing_support::grid_mesh;
+using testing_support::relabelled;
 using testing_support::unit_tet;
 
 ScreenTransform::Ray through(const glm::dvec3& point, const glm::dvec3& direction) {
@@ -163,17 +163,9 @@ TEST(RayIndex, AlongTheBoundary) {
 TEST(RayIndex, AnyNumberingAndOrientationIsTheSame) {
     const TetMesh mesh = grid_mesh(5, 0.2, 8);
     std::mt19937_64 random(3);
-    std::vector<VertexId> label(mesh.points.size());
-    std::iota(label.begin(), label.end(), 0U);
-    std::shuffle(label.begin(), label.end(), random);
-    TetMesh other = mesh;
-    for (std::size_t v = 0; v < label.size(); ++v)
-        other.points[label[v]] = mesh.points[v];
-    for (auto& tet : other.tets) {
-        for (auto& v : tet)
-            v = label[v];
+    TetMesh other = relabelled(mesh, random);
+    for (auto& tet : other.tets)
         std::shuffle(tet.begin(), tet.end(), random);
-    }
     const RayIndex a(mesh), b(other);
     for (int i = 0; i < 200; ++i) {
         const auto ray = random_ray(random);

@@ -21,7 +21,7 @@
 #include "mesh/error.hpp"
 #include "mesh/planar_facet.hpp"
 #include "mesh/surface.hpp"
-#include "tests/mesher_fixtures.hpp"
+#include "tests/surface_fixtures.hpp"
 
 namespace cellproj {
 namespace {
@@ -180,29 +180,11 @@ TEST(PlanarFacet, RandomStarsKeepTheirArea) {
 
 // ---- Files ----
 
-class PolyFile : public testing::Test {
+class PolyFile : public SurfaceFile {
 protected:
-    void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  ("cellproj_poly_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(folder_ / name, std::ios::binary) << bytes;
-        return folder_ / name;
-    }
-
     void expect_refused(const std::string& bytes, const std::string& words) const {
-        const fs::path file = write("a.poly", bytes);
-        const Error error = error_of([&] { read_surface(file); });
-        EXPECT_NE(error.place().find(file.string()), std::string::npos) << error.what();
-        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+        SurfaceFile::expect_refused("a.poly", bytes, words);
     }
-
-    fs::path folder_;
 };
 
 // A cube, its lid pierced by a square; one attribute and a marker at each point. Indices start at `first`.

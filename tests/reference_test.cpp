@@ -11,7 +11,6 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <random>
 #include <set>
 
@@ -21,6 +20,7 @@
 #include "mesh/error.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace cellproj {
 namespace {
@@ -28,56 +28,26 @@ namespace {
 using testing_support::delaunay_mesh;
 using testing_support::grid_mesh;
 using testing_support::point_field;
+using testing_support::chord_in_unit_cube;
+using testing_support::Chord;
+using testing_support::constant_medium;
+using testing_support::linear;
+using testing_support::ramp;
+using testing_support::relabelled;
+using testing_support::scene_of;
+using testing_support::view_of_unit_cube;
 
 // The bound that the judge states.
 constexpr double stated = 1e-9;
 
 constexpr ImageSize small{48, 48};
 
-Scene scene_of(TetMesh mesh, ScalarField field, TransferFunction transfer) {
-    return {std::make_shared<TetMesh>(std::move(mesh)), std::make_shared<ScalarField>(std::move(field)),
-            std::make_shared<TransferFunction>(std::move(transfer))};
-}
-
-Scene scene_of(TetMesh mesh, const std::function<double(const glm::dvec3&)>& f, TransferFunction transfer) {
-    ScalarField field = point_field(mesh, f);
-    return scene_of(std::move(mesh), std::move(field), std::move(transfer));
-}
-
-TransferFunction constant_medium(double extinction) {
-    return {OpticalModel::density, {{0, {1.0, 0.5, 0.25}}}, {{0, extinction}}};
-}
-
-TransferFunction ramp() { return {OpticalModel::density, {{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.2}, {1, 4.0}}}; }
-
-double linear(const glm::dvec3& p) { return (p.x + 0.5 * p.y + 0.25 * p.z) / 1.75; }
-
-Camera view_of_unit_cube(Camera::Projection projection, const glm::dvec3& from = {1.3, -2.1, 0.9}) {
-    return frame_bounds({glm::dvec3(0), glm::dvec3(1)}, projection, from, {0, 0, 1}, 1.0);
-}
-
-// Looks down the z axis on the unit square of x and y; pixel (i, j) of n² sees x = (i + 1/2)/n.
 Camera from_above(double height = 1.0) {
     return {.projection = Camera::Projection::parallel,
             .eye = {0.5, 0.5, 9},
             .center = {0.5, 0.5, 0},
             .up = {0, 1, 0},
             .height = height};
-}
-
-struct Chord {
-    double enter = 0, leave = 0;
-    double length() const { return std::max(0.0, leave - enter); }
-};
-
-Chord chord_in_unit_cube(const ScreenTransform::Ray& ray, bool from_origin) {
-    Chord chord{from_origin ? 0 : -1e9, 1e9};
-    for (int axis = 0; axis < 3; ++axis) {
-        const double a = (0 - ray.origin[axis]) / ray.direction[axis], b = (1 - ray.origin[axis]) / ray.direction[axis];
-        chord.enter = std::max(chord.enter, std::min(a, b));
-        chord.leave = std::min(chord.leave, std::max(a, b));
-    }
-    return chord;
 }
 
 double distance(const Light& a, const Light& b) {
@@ -187,17 +157,9 @@ TEST(Reference, RaysThroughVerticesEdgesAndFaces) {
 TEST(Reference, RelabelledAndPermuted) {
     const TetMesh mesh = grid_mesh(6, 0.2, 9);
     std::mt19937_64 random(71);
-    std::vector<VertexId> label(mesh.points.size());
-    std::iota(label.begin(), label.end(), 0U);
-    std::shuffle(label.begin(), label.end(), random);
-    TetMesh other = mesh;
-    for (std::size_t v = 0; v < label.size(); ++v)
-        other.points[label[v]] = mesh.points[v];
-    for (auto& tet : other.tets) {
-        for (auto& v : tet)
-            v = label[v];
+    TetMesh other = relabelled(mesh, random);
+    for (auto& tet : other.tets)
         std::shuffle(tet.begin(), tet.end(), random);
-    }
     std::shuffle(other.tets.begin(), other.tets.end(), random);
     const auto f = [](const glm::dvec3& p) { return 0.5 + 0.5 * std::sin(9 * p.x + 5 * p.y) * std::cos(7 * p.z); };
     const Camera camera = view_of_unit_cube(Camera::Projection::perspective);

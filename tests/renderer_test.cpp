@@ -18,6 +18,7 @@
 #include "classify/segment_integral.hpp"
 #include "mesh/error.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace cellproj {
 namespace {
@@ -25,6 +26,14 @@ namespace {
 using testing_support::delaunay_mesh;
 using testing_support::grid_mesh;
 using testing_support::point_field;
+using testing_support::chord_in_unit_cube;
+using testing_support::Chord;
+using testing_support::constant_medium;
+using testing_support::linear;
+using testing_support::ramp;
+using testing_support::relabelled;
+using testing_support::scene_of;
+using testing_support::view_of_unit_cube;
 using testing_support::unit_tet;
 
 constexpr ImageSize small{96, 96};
@@ -32,47 +41,6 @@ constexpr ImageSize small{96, 96};
 Renderer& renderer() {
     static const auto shared = make_renderer(Backend::gl_osmesa);
     return *shared;
-}
-
-Scene scene_of(TetMesh mesh, ScalarField field, TransferFunction transfer) {
-    return {std::make_shared<TetMesh>(std::move(mesh)), std::make_shared<ScalarField>(std::move(field)),
-            std::make_shared<TransferFunction>(std::move(transfer))};
-}
-
-Scene scene_of(TetMesh mesh, const std::function<double(const glm::dvec3&)>& f, TransferFunction transfer) {
-    ScalarField field = point_field(mesh, f);
-    return scene_of(std::move(mesh), std::move(field), std::move(transfer));
-}
-
-TransferFunction constant_medium(double extinction) {
-    return {OpticalModel::density, {{0, {1.0, 0.5, 0.25}}}, {{0, extinction}}};
-}
-
-// A ramp in colour and extinction, with self-attenuation that matters (optical depth up to about 3 through the cube).
-TransferFunction ramp() {
-    return {OpticalModel::density, {{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.2}, {1, 4.0}}};
-}
-
-double linear(const glm::dvec3& p) { return (p.x + 0.5 * p.y + 0.25 * p.z) / 1.75; }
-
-Camera view_of_unit_cube(Camera::Projection projection, const glm::dvec3& from = {1.3, -2.1, 0.9}) {
-    return frame_bounds({glm::dvec3(0), glm::dvec3(1)}, projection, from, {0, 0, 1}, 1.0);
-}
-
-struct Chord {
-    double enter = 0, leave = 0;
-    double length() const { return std::max(0.0, leave - enter); }
-};
-
-// The part of a ray inside the unit cube [lengths along the ray]; perspective rays start at the eye.
-Chord chord_in_unit_cube(const ScreenTransform::Ray& ray, bool from_origin) {
-    Chord chord{from_origin ? 0 : -1e9, 1e9};
-    for (int axis = 0; axis < 3; ++axis) {
-        const double a = (0 - ray.origin[axis]) / ray.direction[axis], b = (1 - ray.origin[axis]) / ray.direction[axis];
-        chord.enter = std::max(chord.enter, std::min(a, b));
-        chord.leave = std::min(chord.leave, std::max(a, b));
-    }
-    return chord;
 }
 
 double max_difference(const Image& a, const Image& b) {
@@ -235,15 +203,9 @@ struct Fixture {
 TEST(Renderer, RelabelledVerticesAndPermutedCells) {
     const Fixture fixture;
     std::mt19937_64 random(71);
-    std::vector<VertexId> label(fixture.mesh.points.size());
-    std::iota(label.begin(), label.end(), 0U);
-    std::shuffle(label.begin(), label.end(), random);
-    TetMesh mesh = fixture.mesh;
-    for (std::size_t v = 0; v < label.size(); ++v) mesh.points[label[v]] = fixture.mesh.points[v];
-    for (auto& tet : mesh.tets) {
-        for (auto& v : tet) v = label[v];
+    TetMesh mesh = relabelled(fixture.mesh, random);
+    for (auto& tet : mesh.tets)
         std::rotate(tet.begin(), tet.begin() + 1, tet.begin() + 3);  // an even permutation keeps the orientation
-    }
     std::shuffle(mesh.tets.begin(), mesh.tets.end(), random);
     const Image picture = renderer().render(scene_of(mesh, linear, ramp()), fixture.camera, small);
     EXPECT_LT(max_difference(picture, fixture.picture), 1e-3);

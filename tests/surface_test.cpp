@@ -15,39 +15,13 @@
 
 #include "mesh/error.hpp"
 #include "mesh/surface.hpp"
-#include "tests/mesher_fixtures.hpp"
+#include "tests/surface_fixtures.hpp"
 
 namespace cellproj {
 namespace {
 
 namespace fs = std::filesystem;
 using mesher_fixtures::error_of;
-
-class SurfaceFile : public testing::Test {
-protected:
-    void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  ("cellproj_surface_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(folder_ / name, std::ios::binary) << bytes;
-        return folder_ / name;
-    }
-
-    // The Error names the file; its text holds `words`.
-    void expect_refused(const std::string& name, const std::string& bytes, const std::string& words) const {
-        const fs::path file = write(name, bytes);
-        const Error error = error_of([&] { read_surface(file); });
-        EXPECT_NE(error.place().find(file.string()), std::string::npos) << error.what();
-        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
-
-    fs::path folder_;
-};
 
 // The tetrahedron between the origin and the unit vectors: volume 1/6.
 Surface corner() {

@@ -2,7 +2,6 @@
 //
 // From surfaces, clean and dirty, to volumes: by the library, and by the program as a user meets it.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkNew.h>
@@ -31,6 +30,7 @@
 #include "mesh/mesher_format.hpp"
 #include "mesh/surface.hpp"
 #include "tests/mesher_fixtures.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace cellproj {
 namespace {
@@ -38,6 +38,8 @@ namespace {
 namespace fs = std::filesystem;
 using mesher_fixtures::add_box;
 using mesher_fixtures::error_of;
+using testing_support::FolderTest;
+using testing_support::Outcome;
 
 Surface boxes(std::initializer_list<std::array<glm::dvec3, 2>> corners) {
     PiecewiseLinearComplex complex;
@@ -226,36 +228,15 @@ TEST(SurfaceMeshing, MessagesSurviveTheExchange) {
 
 // ---- The program, and files ----
 
-struct Outcome {
-    int code = -1;
-    std::string text;  // standard output and error together
-};
-
-class TetrahedralizeCommand : public testing::Test {
+class TetrahedralizeCommand : public FolderTest {
 protected:
     void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  ("cellproj_tets_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-        std::ofstream(folder_ / "corner.off") << "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
-                                                 "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+        FolderTest::SetUp();
+        write("corner.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     Outcome run(const std::string& arguments) const { return run_program("tetrahedralize " + arguments); }
-
-    Outcome run_program(const std::string& arguments) const {
-        const std::string command = "cd '" + folder_.string() + "' && '" + CELLPROJ_PROGRAM + "' " + arguments + " 2>&1";
-        Outcome outcome;
-        FILE* pipe = popen(command.c_str(), "r");
-        std::array<char, 4096> buffer{};
-        for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-            outcome.text.append(buffer.data(), n);
-        const int status = pclose(pipe);
-        outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-        return outcome;
-    }
+    Outcome run_program(const std::string& arguments) const { return testing_support::run_program(folder_, arguments); }
 
     std::ptrdiff_t file_count() const {
         return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
@@ -274,8 +255,6 @@ protected:
     }
 
     static fs::path shared(const std::string& name) { return fs::path(CELLPROJ_SHARED_DATA) / name; }
-
-    fs::path folder_;
 };
 
 TEST_F(TetrahedralizeCommand, WritesAMeshThatVtkReads) {

@@ -16,6 +16,8 @@
 namespace cellproj {
 namespace {
 
+using testing_support::cube_corners;
+using testing_support::single_cell;
 using testing_support::total_volume;
 
 // The points of an ni x nj x nk grid in the order of GridDimensions, unit spacing, each moved by up to `jitter`.
@@ -90,17 +92,6 @@ Dataset shuffled_hexahedra(const GridDimensions& grid, double jitter, std::mt199
     }
     return dataset;
 }
-
-Dataset single_cell(CellKind kind, std::vector<glm::dvec3> points, std::vector<VertexId> vertices) {
-    Dataset dataset;
-    dataset.source = "cell";
-    dataset.points = std::move(points);
-    dataset.cells = {{kind}, {0, vertices.size()}, vertices};
-    return dataset;
-}
-
-const std::vector<glm::dvec3> cube{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                   {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
 
 // Two triangles for each quadrilateral on the surface of the block.
 std::size_t surface_triangles(const GridDimensions& grid) {
@@ -232,7 +223,7 @@ TEST(TetrahedralizeHexahedra, ACollapsedHexahedronGivesNoTetWithARepeatedVertex)
 }
 
 TEST(TetrahedralizeCells, TetrahedraStayAsTheyAre) {
-    const Dataset dataset = single_cell(CellKind::tetrahedron, cube, {7, 0, 1, 3});
+    const Dataset dataset = single_cell(CellKind::tetrahedron, cube_corners, {7, 0, 1, 3});
     TetrahedralizeReport report;
     const TetMesh mesh = tetrahedralize(dataset, &report);
     ASSERT_EQ(mesh.tets.size(), 1U);
@@ -244,7 +235,7 @@ TEST(TetrahedralizeCells, TetrahedraStayAsTheyAre) {
 TEST(TetrahedralizeFields, CellRowsAreRepeatedAndPointRowsKept) {
     Dataset dataset;
     dataset.source = "mixed";
-    dataset.points = cube;
+    dataset.points = cube_corners;
     dataset.points.push_back({0.5, 0.5, 2});
     dataset.cells = {{CellKind::tetrahedron, CellKind::hexahedron, CellKind::tetrahedron},
                      {0, 4, 12, 16},
@@ -284,27 +275,27 @@ TEST(TetrahedralizeErrors, UnusableDatasetsAreRefused) {
     empty.source = "empty";
     empty.cells.offsets = {0};
     EXPECT_EQ(kind_of_error(empty), ErrorKind::data);
-    EXPECT_EQ(kind_of_error(single_cell(CellKind::tetrahedron, cube, {0, 1, 2, 8})), ErrorKind::data);
-    Dataset not_finite = single_cell(CellKind::tetrahedron, cube, {0, 1, 3, 4});
+    EXPECT_EQ(kind_of_error(single_cell(CellKind::tetrahedron, cube_corners, {0, 1, 2, 8})), ErrorKind::data);
+    Dataset not_finite = single_cell(CellKind::tetrahedron, cube_corners, {0, 1, 3, 4});
     not_finite.points[6].y = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(kind_of_error(not_finite), ErrorKind::data);
-    Dataset short_cell_field = single_cell(CellKind::hexahedron, cube, {0, 1, 2, 3, 4, 5, 6, 7});
+    Dataset short_cell_field = single_cell(CellKind::hexahedron, cube_corners, {0, 1, 2, 3, 4, 5, 6, 7});
     short_cell_field.cell_fields = {{"c", 3, {1, 2}}};
     EXPECT_EQ(kind_of_error(short_cell_field), ErrorKind::data);
-    Dataset short_point_field = single_cell(CellKind::hexahedron, cube, {0, 1, 2, 3, 4, 5, 6, 7});
+    Dataset short_point_field = single_cell(CellKind::hexahedron, cube_corners, {0, 1, 2, 3, 4, 5, 6, 7});
     short_point_field.point_fields = {{"s", 1, {1, 2}}};
     EXPECT_EQ(kind_of_error(short_point_field), ErrorKind::data);
-    EXPECT_EQ(kind_of_error(single_cell(CellKind::wedge, cube, {0, 1, 2, 3, 4})), ErrorKind::data);
+    EXPECT_EQ(kind_of_error(single_cell(CellKind::wedge, cube_corners, {0, 1, 2, 3, 4})), ErrorKind::data);
     const std::vector<std::vector<VertexId>> broken_streams{
         {}, {4, 3, 0, 1, 2}, {1, 3, 0, 1}, {1, 2, 0, 1, 2}, {1, 0xffffffffU, 0}, {1, 3, 0, 1, 8}};
     for (const auto& stream : broken_streams)
-        EXPECT_EQ(kind_of_error(single_cell(CellKind::polyhedron, cube, stream)), ErrorKind::data);
+        EXPECT_EQ(kind_of_error(single_cell(CellKind::polyhedron, cube_corners, stream)), ErrorKind::data);
 }
 
 // The mean of such points is infinite, and an infinite point has no sign on any side.
 TEST(Tetrahedralize, ACentreThatOverflowsIsAnError) {
     std::vector<glm::dvec3> huge;
-    for (const glm::dvec3& p : cube)
+    for (const glm::dvec3& p : cube_corners)
         huge.push_back(1.5e308 * p);
     const std::vector<VertexId> stream{6, 4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4,
                                        4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7};

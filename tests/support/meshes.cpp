@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/support/meshes.hpp"
 
-#include <random>
+#include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "mesh/mesher.hpp"
 #include "mesh/tetrahedralize.hpp"
@@ -13,6 +15,28 @@ TetMesh unit_tet() {
     mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.tets = {{0, 1, 2, 3}};
     return mesh;
+}
+
+TetMesh relabelled(const TetMesh& mesh, std::mt19937_64& random) {
+    std::vector<VertexId> label(mesh.points.size());
+    std::iota(label.begin(), label.end(), 0U);
+    std::shuffle(label.begin(), label.end(), random);
+    TetMesh other = mesh;
+    for (std::size_t v = 0; v < label.size(); ++v)
+        other.points[label[v]] = mesh.points[v];
+    for (auto& tet : other.tets) {
+        for (auto& v : tet)
+            v = label[v];
+    }
+    return other;
+}
+
+Dataset single_cell(CellKind kind, std::vector<glm::dvec3> points, std::vector<VertexId> vertices) {
+    Dataset dataset;
+    dataset.source = "cell";
+    dataset.points = std::move(points);
+    dataset.cells = {{kind}, {0, vertices.size()}, vertices};
+    return dataset;
 }
 
 TetMesh grid_mesh(int n, double jitter, std::uint64_t seed) {

@@ -5,9 +5,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <random>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "mesh/dataset.hpp"
 #include "mesh/scalar_field.hpp"
 #include "mesh/tet_mesh.hpp"
 
@@ -23,6 +26,14 @@ TetMesh grid_mesh(int n, double jitter = 0.0, std::uint64_t seed = 1);
 // The Delaunay tetrahedralization of the corners of the unit cube and `points` random points inside, by the mesher. Convex
 // and acyclic from every eye (Edelsbrunner 1990). About 6.5 cells per point. Throws Error where there is no mesher.
 TetMesh delaunay_mesh(int points, std::uint64_t seed = 1);
+
+// The same mesh under other numbers of its points: shape, order and corners of the cells stay.
+TetMesh relabelled(const TetMesh& mesh, std::mt19937_64& random);
+
+// The corners of the unit cube in the order of a hexahedron, and a dataset of one cell.
+inline const std::vector<glm::dvec3> cube_corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                                  {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+Dataset single_cell(CellKind kind, std::vector<glm::dvec3> points, std::vector<VertexId> vertices);
 
 // The sum of the signed volumes of all cells.
 double total_volume(const TetMesh& mesh);

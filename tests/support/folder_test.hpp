@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tests that work in a folder of their own, and run the program there.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace cellproj::testing_support {
+
+// The folder is empty at the start of each case and gone behind it.
+class FolderTest : public testing::Test {
+protected:
+    void SetUp() override {
+        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::path(testing::TempDir()) /
+                  ("cellproj_" + std::string(test->test_suite_name()) + "_" + test->name());
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(folder_ / name, std::ios::binary) << bytes;
+        return folder_ / name;
+    }
+
+    std::filesystem::path folder_;
+};
+
+struct Outcome {
+    int code = -1;
+    std::string text;  // standard output and error together
+};
+
+// Runs cellproj with these arguments in `folder`, behind settings of the environment: "NAME=value".
+inline Outcome run_program(const std::filesystem::path& folder, const std::string& arguments,
+                           const std::string& environment = "") {
+    const std::string command =
+        "cd '" + folder.string() + "' && " + environment + " '" + CELLPROJ_PROGRAM + "' " + arguments + " 2>&1";
+    Outcome outcome;
+    FILE* pipe = popen(command.c_str(), "r");
+    std::array<char, 4096> buffer{};
+    for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+        outcome.text.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return outcome;
+}
+
+}  // namespace cellproj::testing_support
