@@ -9,7 +9,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "mesh/error.hpp"
@@ -19,18 +18,9 @@ namespace cellproj {
 namespace {
 
 SceneUnits find_units(const Scene& scene) {
-    assert(scene.mesh && scene.field && scene.transfer);
-    const auto& [mesh, field] = std::tie(*scene.mesh, *scene.field);
-    const std::size_t rows = field.location == FieldLocation::points ? mesh.points.size() : mesh.tets.size();
-    if (field.values.size() != rows) {
-        throw Error({ErrorKind::data, "field \"" + field.name + "\"", std::to_string(rows) + " values",
-                     std::to_string(field.values.size()), "choose a field of this mesh"});
-    }
-    const ScalarRange values = range(field.values);
-    if (values.not_finite == field.values.size()) {
-        throw Error({ErrorKind::data, "field \"" + field.name + "\"", "finite values", "none", "choose another field"});
-    }
-    const double half_diagonal = bounds(mesh.points).diagonal() / 2;
+    validate(scene);
+    const ScalarRange values = range(scene.field->values);
+    const double half_diagonal = bounds(scene.mesh->points).diagonal() / 2;
     return {half_diagonal > 0 ? half_diagonal : 1.0, values.low, values.high};
 }
 
@@ -140,9 +130,13 @@ std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& uni
 
 PreparedScene::PreparedScene(Scene scene)
     : scene_(std::move(scene)), units_(find_units(scene_)), sorter_(*scene_.mesh),
-      mean_chord_(find_mean_chord(*scene_.mesh, units_.length)),
       bins_(find_bins(scene_, units_)),
       visible_(find_visible(scene_, units_, bins_)) {}
+
+double PreparedScene::mean_chord() {
+    if (!mean_chord_) mean_chord_ = find_mean_chord(*scene_.mesh, units_.length);
+    return *mean_chord_;
+}
 
 void PreparedScene::set_transfer(std::shared_ptr<const TransferFunction> transfer) {
     scene_.transfer = std::move(transfer);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "render/scene.hpp"
@@ -32,8 +33,8 @@ public:
     const SceneUnits& units() const { return units_; }
     VisibilitySorter& sorter() { return sorter_; }
     // Mean length of a segment over all cells and directions, 4·volume / surface by Cauchy's formula [SceneUnits::length],
-    // > 0.
-    double mean_chord() const { return mean_chord_; }
+    // > 0. Found when it is asked for first.
+    double mean_chord();
 
     // visible()[cell] is 0 for cells that add nothing to any picture: no emission and no extinction over the range of
     // their scalars, or a scalar that is not finite.
@@ -52,7 +53,7 @@ private:
     Scene scene_;
     SceneUnits units_;
     VisibilitySorter sorter_;
-    double mean_chord_;
+    std::optional<double> mean_chord_;  // once somebody has asked
     std::vector<BinRange> bins_;  // #T
     std::vector<std::uint8_t> visible_;
 };

@@ -24,18 +24,6 @@ namespace {
 
 using Range = oneapi::tbb::blocked_range<std::size_t>;
 
-void check_field(const Scene& scene) {
-    const ScalarField& field = *scene.field;
-    const std::size_t rows = field.location == FieldLocation::points ? scene.mesh->points.size() : scene.mesh->tets.size();
-    if (field.values.size() != rows) {
-        throw Error({ErrorKind::data, "field \"" + field.name + "\"", std::to_string(rows) + " values",
-                     std::to_string(field.values.size()), "choose a field of this mesh"});
-    }
-    if (std::none_of(field.values.begin(), field.values.end(), [](double s) { return std::isfinite(s); })) {
-        throw Error({ErrorKind::data, "field \"" + field.name + "\"", "finite values", "none", "choose another field"});
-    }
-}
-
 void check_pixel(PixelId pixel, int width, int height) {
     if (pixel.x >= 0 && pixel.x < width && pixel.y >= 0 && pixel.y < height) return;
     throw Error({ErrorKind::option, "pixel",
@@ -142,8 +130,7 @@ double outside(double value, double low, double high) {
 }  // namespace
 
 Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene_(std::move(scene)), index_(std::move(index)) {
-    assert(scene_.mesh && scene_.field && scene_.transfer);
-    check_field(scene_);
+    validate(scene_);
     if (!index_) index_ = std::make_shared<RayIndex>(*scene_.mesh);
 }
 
@@ -253,16 +240,22 @@ Image to_image(std::span<const PixelTruth> truths, ImageSize size) {
     return image;
 }
 
+glm::dvec4 error_of_pixel(const Image& image, const PixelTruth& truth) {
+    check_pixel(truth.pixel, image.width, image.height);
+    const glm::vec4& found = image.at(truth.pixel.x, truth.pixel.y);
+    glm::dvec4 error;
+    for (int k = 0; k < 3; ++k)
+        error[k] = outside(found[k], truth.low.color[k], truth.high.color[k]);
+    error.a = outside(found.a, truth.low.opacity, truth.high.opacity);
+    return error;
+}
+
 ImageError compare(const Image& image, std::span<const PixelTruth> truths) {
     Errors color, opacity;
     for (const PixelTruth& truth : truths) {
-        check_pixel(truth.pixel, image.width, image.height);
-        const glm::vec4& found = image.at(truth.pixel.x, truth.pixel.y);
-        std::array<double, 3> channels;
-        for (int k = 0; k < 3; ++k)
-            channels[static_cast<std::size_t>(k)] = outside(found[k], truth.low.color[k], truth.high.color[k]);
-        color.add(channels);
-        opacity.add(std::array{outside(found.w, truth.low.opacity, truth.high.opacity)});
+        const glm::dvec4 error = error_of_pixel(image, truth);
+        color.add(std::array{error.r, error.g, error.b});
+        opacity.add(std::array{error.a});
     }
     return {truths.size(), color.measure(), opacity.measure()};
 }

@@ -22,6 +22,8 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec4.hpp>
+
 #include "project/camera.hpp"
 #include "render/image.hpp"
 #include "render/ray_index.hpp"
@@ -87,7 +89,11 @@ std::vector<PixelId> all_pixels(ImageSize size);
 // The truths as a picture: 0 where there is none.
 Image to_image(std::span<const PixelTruth> truths, ImageSize size);
 
-// How far values lie outside of low..high, absolute.
+// How far each channel of the picture lies outside of low..high at the truth's pixel, absolute; infinite where it is not
+// finite. Throws Error (option) when the pixel lies outside the picture.
+glm::dvec4 error_of_pixel(const Image& image, const PixelTruth& truth);
+
+// The same over many pixels.
 struct ErrorMeasure {
     double rms = 0;            // root of the mean square, over all channels of all pixels
     double percentile_99 = 0;  // 99 % of the pixels have at most this in their worst channel

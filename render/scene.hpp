@@ -18,4 +18,7 @@ struct Scene {
     std::shared_ptr<const TransferFunction> transfer;
 };
 
+// Throws Error (data) when the field does not fit the mesh or has no finite value.
+void validate(const Scene& scene);
+
 }  // namespace cellproj

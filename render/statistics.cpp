@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/statistics.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <fstream>
 #include <string>
 
@@ -45,6 +47,13 @@ Json picture_json(const Statistics& picture) {
 }
 
 }  // namespace
+
+double median(std::vector<double> values) {
+    assert(!values.empty());
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 // From /proc and not from getrusage, whose peak a program inherits from the one that launched it.
 std::size_t peak_memory_bytes() {

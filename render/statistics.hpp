@@ -53,6 +53,9 @@ struct RunStatistics {
     std::size_t peak_memory_bytes = 0;
 };
 
+// The middle one of an odd number of values, the upper of the middle two of an even one. At least one value.
+double median(std::vector<double> values);
+
 // Largest resident set of this process so far [bytes]; 0 where /proc does not tell.
 std::size_t peak_memory_bytes();
 

@@ -13,12 +13,6 @@ namespace cellproj {
 
 namespace {
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 double largest(const ImageError& error) {
     return std::max(error.color.maximum, error.opacity.maximum);
 }
@@ -26,17 +20,6 @@ double largest(const ImageError& error) {
 bool is_better(const TradeRow& a, const TradeRow& b) {
     const double error_a = a.error.color.rms, error_b = b.error.color.rms;
     return a.frame_ms <= b.frame_ms && error_a <= error_b && (a.frame_ms < b.frame_ms || error_a < error_b);
-}
-
-double outside(double value, double low, double high) {
-    return std::max({low - value, value - high, 0.0});
-}
-
-double largest_error(const glm::vec4& pixel, const PixelTruth& truth) {
-    double error = outside(pixel.a, truth.low.opacity, truth.high.opacity);
-    for (int channel = 0; channel < 3; ++channel)
-        error = std::max(error, outside(pixel[channel], truth.low.color[channel], truth.high.color[channel]));
-    return error;
 }
 
 // 0..1 to colours that get lighter: dark blue, violet, red, yellow.
@@ -114,7 +97,8 @@ const TradeRow* fastest_within(std::span<const TradeRow> rows, double max_error)
 Image error_map(const Image& image, std::span<const PixelTruth> truths) {
     Image map(image.width, image.height);
     for (const PixelTruth& truth : truths) {
-        const double error = largest_error(image.at(truth.pixel.x, truth.pixel.y), truth);
+        const glm::dvec4 channels = error_of_pixel(image, truth);
+        const double error = std::max({channels.r, channels.g, channels.b, channels.a});
         const double decades = error > 0.0 ? std::log10(error) + 5.0 : 0.0;  // 0 at 1e-5, 4 at 1e-1
         map.at(truth.pixel.x, truth.pixel.y) = glm::vec4(heat(std::isfinite(error) ? decades / 4.0 : 1.0), 1.0F);
     }

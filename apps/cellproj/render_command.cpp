@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
@@ -86,15 +87,14 @@ void print_line(const std::filesystem::path& file, const Statistics& s) {
 // The median over the pictures, without the first one, in which the driver compiles its shaders and tables are made.
 void print_median(const std::vector<Statistics>& pictures) {
     if (pictures.size() < 3) return;
-    const auto median = [&](double (*stage)(const Statistics&)) {
+    const auto median_of = [&](double (*stage)(const Statistics&)) {
         std::vector<double> values;
         for (std::size_t i = 1; i < pictures.size(); ++i) values.push_back(stage(pictures[i]));
-        std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-        return values[values.size() / 2];
+        return median(std::move(values));
     };
     std::printf("median of %zu views: %.0f ms (sort %.0f, project %.0f, draw %.0f)\n", pictures.size() - 1,
-                median([](const Statistics& s) { return s.ms.total; }), median([](const Statistics& s) { return s.ms.sort; }),
-                median([](const Statistics& s) { return s.ms.project; }), median([](const Statistics& s) { return s.ms.draw; }));
+                median_of([](const Statistics& s) { return s.ms.total; }), median_of([](const Statistics& s) { return s.ms.sort; }),
+                median_of([](const Statistics& s) { return s.ms.project; }), median_of([](const Statistics& s) { return s.ms.draw; }));
 }
 
 void render_pictures(const RenderOptions& options) {

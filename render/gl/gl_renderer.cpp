@@ -92,15 +92,17 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     const SceneUnits& units = prepared_->units();
     const TransferFunction transfer =
         in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
+    // A walk over all cells, which one method alone wants to know of.
+    const double mean_length = quality.method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
     lighting_.reset();
     auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
     const bool keeps = shader && same_cells && method_ == quality.method;
     if (light_at_vertices(quality.method)) {
         shader.reset();
-        lighting_ = make_vertex_lighting(quality.method, transfer, longest_segment, prepared_->mean_chord());
+        lighting_ = make_vertex_lighting(quality.method, transfer, longest_segment, mean_length);
     } else if (!keeps || !shader->update(transfer)) {
         shader.reset();  // its memory first
-        shader = make_segment_shader(quality.method, transfer, longest_segment, prepared_->mean_chord());
+        shader = make_segment_shader(quality.method, transfer, longest_segment, mean_length);
     }
     shader_ = std::move(shader);
     method_ = quality.method;
