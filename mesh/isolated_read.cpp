@@ -264,18 +264,18 @@ public:
         wait(0);
     }
 
-    // Processor time so far [clock ticks] if it sleeps now; none while it works, or where /proc does not tell.
-    std::optional<unsigned long> ticks_if_asleep() const {
+    // Processor time so far [clock ticks] if it sleeps now; −1 while it works, or where /proc does not tell.
+    long ticks_if_asleep() const {
         std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
         std::string text((std::istreambuf_iterator<char>(file)), {});
         const std::size_t name_end = text.rfind(')');  // the name may hold anything
-        if (name_end == std::string::npos) return std::nullopt;
+        if (name_end == std::string::npos) return -1;
         std::istringstream fields(text.substr(name_end + 1));
         std::string state, skipped;
-        unsigned long user = 0, system = 0;
+        long user = 0, system = 0;
         fields >> state;
         for (int field = 4; field < 14; ++field) fields >> skipped;
-        if (!(fields >> user >> system) || state != "S") return std::nullopt;
+        if (!(fields >> user >> system) || state != "S") return -1;
         return user + system;
     }
 
@@ -314,17 +314,17 @@ public:
         const auto now = std::chrono::steady_clock::now();
         if (now < next_) return false;
         next_ = now + std::chrono::milliseconds(500);
-        const auto ticks = child_.ticks_if_asleep();
-        if (!ticks || ticks != ticks_) {
+        const long ticks = child_.ticks_if_asleep();
+        if (ticks < 0 || ticks != ticks_) {
             ticks_ = ticks;
             since_ = now;
         }
-        return ticks && now - since_ > std::chrono::seconds(3);
+        return ticks >= 0 && now - since_ > std::chrono::seconds(3);
     }
 
 private:
     const Child& child_;
-    std::optional<unsigned long> ticks_;
+    long ticks_ = -1;
     std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now(), since_ = next_;
 };
 
