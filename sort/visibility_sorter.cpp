@@ -3,11 +3,13 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -67,7 +69,8 @@ VisibilitySorter::VisibilitySorter(const TetMesh& mesh, Adjacency adjacency)
 }
 
 // Kahn's topological sort; where it stalls, the farthest cell left is released against its relations.
-std::span<const CellId> VisibilitySorter::order(const Eye& eye, OrderReport* report) {
+ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::optional<OrderMethod> /*method*/,
+                                  const PixelGrid* /*pixels*/, std::span<const std::uint8_t> /*visible*/) {
     const std::size_t cells = mesh_.tets.size();
     find_relations(eye);
     free_.reset(cells);
@@ -93,8 +96,8 @@ std::span<const CellId> VisibilitySorter::order(const Eye& eye, OrderReport* rep
             drain();
         }
     }
-    if (report) report->unordered = unordered;
-    return order_;
+    if (report) *report = {.method = OrderMethod::mpvo, .exact = false, .unordered = unordered};
+    return {order_, {}};
 }
 
 void VisibilitySorter::find_relations(const Eye& eye) {
@@ -139,28 +142,31 @@ void VisibilitySorter::release(CellId cell) {
 
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report) {
     VisibilitySorter sorter(mesh);
-    const auto order = sorter.order(eye, report);
-    return {order.begin(), order.end()};
+    const ViewOrder order = sorter.order(eye, report);
+    return {order.items.begin(), order.items.end()};
 }
 
-std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, std::span<const CellId> order,
-                                   const Eye& eye) {
-    assert(order.size() == mesh.tets.size());
-    std::vector<std::size_t> position(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) position[order[i]] = i;
-    std::size_t violations = 0;
-    for (CellId cell = 0; cell < mesh.tets.size(); ++cell) {
-        for (int face = 0; face < 4; ++face) {
-            const CellId other = adjacency.neighbours[cell][static_cast<std::size_t>(face)];
-            if (other == no_cell || other < cell) continue;
-            const int beyond = beyond_face(mesh, cell, face, eye);
-            // The neighbour on the eye's side must come later.
-            if ((beyond > 0 && position[other] < position[cell]) || (beyond < 0 && position[other] > position[cell])) {
-                ++violations;
+std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye) {
+    constexpr auto absent = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> position(mesh.tets.size(), absent);
+    for (std::uint32_t i = 0; i < order.items.size(); ++i) {
+        if (order.items[i] < mesh.tets.size()) position[order.items[i]] = i;
+    }
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    const auto count = [&](const Range& range, std::size_t violations) {
+        for (std::size_t c = range.begin(); c != range.end(); ++c) {
+            const auto cell = static_cast<CellId>(c);
+            for (int face = 0; face < 4; ++face) {
+                const CellId other = adjacency.neighbours[cell][static_cast<std::size_t>(face)];
+                if (other == no_cell || other < cell || position[cell] == absent || position[other] == absent) continue;
+                const int beyond = beyond_face(mesh, cell, face, eye);
+                // The neighbour on the eye's side must come later.
+                if (beyond != 0 && (beyond > 0) != (position[other] > position[cell])) ++violations;
             }
         }
-    }
-    return violations;
+        return violations;
+    };
+    return oneapi::tbb::parallel_reduce(Range(0, mesh.tets.size(), 4096), std::size_t{0}, count, std::plus<>());
 }
 
 }  // namespace cellproj

@@ -15,18 +15,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "mesh/predicates.hpp"
 #include "mesh/tet_mesh.hpp"
 #include "sort/depth_queue.hpp"
+#include "sort/view_order.hpp"
 
 namespace cellproj {
-
-struct OrderReport {
-    std::size_t unordered = 0;  // cells taken by depth against a relation, to get out of a cycle
-};
 
 // Keeps what does not depend on the eye: the adjacency. The mesh must outlive the sorter and stay unchanged.
 // Memory: 28 bytes per cell. Time: linear (a bucket queue of 65,536 depths). Same order on every machine and for any
@@ -36,8 +34,10 @@ public:
     explicit VisibilitySorter(const TetMesh& mesh) : VisibilitySorter(mesh, build_adjacency(mesh)) {}
     VisibilitySorter(const TetMesh& mesh, Adjacency adjacency);
 
-    // Cells from back to front. The span stays valid until the next call or the end of the sorter.
-    std::span<const CellId> order(const Eye& eye, OrderReport* report = nullptr);
+    // Cells from back to front. The spans stay valid until the next call or the end of the sorter. `method`: nothing for one that
+    // is exact for this mesh. `pixels`: what sxmpvo needs. `visible` (#T or empty): cells with 0 are not drawn; they may be left out.
+    ViewOrder order(const Eye& eye, OrderReport* report = nullptr, std::optional<OrderMethod> method = {},
+                    const PixelGrid* pixels = nullptr, std::span<const std::uint8_t> visible = {});
 
     const Adjacency& adjacency() const { return adjacency_; }
 
@@ -58,8 +58,8 @@ private:
 // One order for one eye.
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report = nullptr);
 
-// How many pairs of face neighbours stand the wrong way round in `order` (a permutation of all cells), by exact signs.
-std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, std::span<const CellId> order,
-                                   const Eye& eye);
+// How many pairs of face neighbours stand the wrong way round, by exact signs. Pairs with a cell that is split or left out do not
+// count.
+std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye);
 
 }  // namespace cellproj
