@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace cellproj {
@@ -76,19 +77,24 @@ QualityChoice choose_quality(Renderer& renderer, const Scene& scene, const Camer
     choice.sample = choice.judged = even.size();
     for (const Method& method : choice_methods(max_error))
         choice.candidates.push_back({{.method = method, .target = options.target}, {}, 0});
-    Candidate& exact = choice.candidates.back();
-    const Image best = renderer.render(scene, camera, size, exact.quality);
-    std::vector<PixelTruth> all_suspects;
-    for (Candidate& candidate : choice.candidates) {
-        if (&candidate == &exact) continue;
-        const Image image = renderer.render(scene, camera, size, candidate.quality);
-        const auto suspects =
-            reference.pixels(camera, size, widest_differences(image, best, options.suspects), slack);
-        candidate.error = judge(image, even, suspects);
-        choice.judged += suspects.size();
-        all_suspects.insert(all_suspects.end(), suspects.begin(), suspects.end());
+    const Image best = renderer.render(scene, camera, size, choice.candidates.back().quality);
+    const auto others = std::span(choice.candidates).first(choice.candidates.size() - 1);
+    std::vector<PixelId> suspects;
+    for (const Candidate& candidate : others) {
+        const auto found =
+            widest_differences(renderer.render(scene, camera, size, candidate.quality), best, options.suspects);
+        suspects.insert(suspects.end(), found.begin(), found.end());
     }
-    exact.error = judge(best, even, all_suspects);
+    const auto by_row = [](PixelId a, PixelId b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); };
+    std::sort(suspects.begin(), suspects.end(), by_row);
+    suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
+    const std::vector<PixelTruth> suspected = reference.pixels(camera, size, suspects, slack);
+    choice.judged += suspected.size();
+    // All are judged by the suspects of each: where two differ, either may be wrong. Drawn once more, as one picture for each of
+    // them at once is much memory where pictures are large.
+    for (Candidate& candidate : others)
+        candidate.error = judge(renderer.render(scene, camera, size, candidate.quality), even, suspected);
+    choice.candidates.back().error = judge(best, even, suspected);
     choose(choice, renderer, scene, camera, size, max_error, options.rounds);
     return choice;
 }

@@ -2,8 +2,8 @@
 //
 // The fastest method that keeps a bound of the error, found by measuring a few on the scene itself: `render --max-error`.
 //
-// Which pixels are judged: an even sample, and besides, for each method, the pixels of the whole picture where it differs most
-// from `exact`. All methods share cells, order and silhouettes, so what sets them apart is the light of segments, and where one
+// Which pixels are judged: an even sample, and besides the pixels of the whole picture where one of the methods differs most
+// from `exact`, which all of them are judged by. All methods share cells, order and silhouettes, so what sets them apart is the light of segments, and where one
 // errs much it differs from `exact` by as much. A layer that crosses a few pixels only is found that way, which a sample misses.
 // What all methods have in common (an order that is not exact, a point moved to the rasterizer's grid) is left to the sample.
 #pragma once
@@ -18,7 +18,7 @@ namespace cellproj {
 struct ChoiceOptions {
     TargetFormat target = TargetFormat::rgba32f;
     std::size_t sample = 4096;   // pixels drawn evenly; all that see the mesh where there are no more
-    std::size_t suspects = 128;  // pixels judged besides, for each method
+    std::size_t suspects = 128;  // pixels judged besides: so many where a method differs from `exact`, for each
     int rounds = 3;              // frames timed of each method that keeps the bound
 };
 

@@ -168,9 +168,8 @@ TEST(TradeChoice, KeepsItsWordOnTheWholePicture) {
         EXPECT_EQ(choice.sample, 1000U);
         EXPECT_GT(choice.judged, 1000U);
         chosen.push_back(to_string(best.quality));
-        for (const Candidate& c : choice.candidates) std::printf("%s max %g rms %g ms %g\n", to_string(c.quality).c_str(), largest(c.error), c.error.color.rms, c.frame_ms);
     }
-    EXPECT_NE(chosen[0], chosen[1]);
+    EXPECT_NE(chosen[0], chosen[1]);  // a table on the ramp, for which the pieces take half as long again
 }
 
 // One cell among thousands has a scalar in a peak that no table resolves. Few pixels see it and none of the sample, by which a table
@@ -179,7 +178,7 @@ TEST(TradeChoice, FindsErrorsThatASampleMisses) {
     TetMesh mesh = grid_mesh(12);
     ScalarField field{"s", FieldLocation::cells, std::vector<double>(mesh.tets.size(), 0.0)};
     field.values[0] = 1.0;
-    field.values[mesh.tets.size() / 2] = 0.953;
+    field.values[mesh.tets.size() / 3] = 0.953;
     const TransferFunction transfer{OpticalModel::density, {{0, {1, 0.5, 0.2}}}, {{0, 0.5}, {0.95, 0.5}, {0.953, 80}, {0.956, 0.5}}};
     const Scene scene = testing_support::scene_of(std::move(mesh), std::move(field), transfer);
     const ImageSize size{128, 128};
@@ -188,10 +187,10 @@ TEST(TradeChoice, FindsErrorsThatASampleMisses) {
     const auto renderer = make_renderer(Backend::gl_osmesa);
 
     const Reference reference(scene);
-    const auto sample = reference.pixels(camera, size, reference.sample(camera, size, 20));
+    const auto sample = reference.pixels(camera, size, reference.sample(camera, size, 20), 1.0 / 512);
     const Image by_table = renderer->render(scene, camera, size, {.method = parse_method("preint2d-exp:256")});
     ASSERT_LE(largest(compare(by_table, sample)), bound);
-    ASSERT_GT(error_of_all_pixels(by_table, scene, camera, bound), 0.1);
+    ASSERT_GT(error_of_all_pixels(by_table, scene, camera, bound), 10 * bound);
 
     const QualityChoice choice = choose_quality(*renderer, scene, camera, size, bound, {.sample = 20});
     const Image image = renderer->render(scene, camera, size, choice.candidates[choice.chosen].quality);
