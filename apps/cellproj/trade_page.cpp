@@ -30,6 +30,32 @@ std::string picture(const Image& image, const std::string& title) {
            base64(encode_png(image)) + "\">";
 }
 
+// A picture of judged pixels, the others around them as the nearest of them (in steps to one of four neighbours): points
+// on white show nothing. Not further than a sample as even as ours leaves holes.
+Image spread(const Image& image, std::span<const PixelTruth> truths) {
+    const double area = static_cast<double>(image.width) * image.height;
+    const auto furthest = truths.size() == 0 ? 0 : static_cast<int>(3.0 * std::sqrt(area / static_cast<double>(truths.size())));
+    Image result = image;
+    Image steps(image.width, image.height);  // in x: 1 + how far a judged pixel is; 0: nobody has come here
+    std::vector<PixelId> front;
+    for (const PixelTruth& truth : truths) {
+        steps.at(truth.pixel.x, truth.pixel.y).x = 1;
+        front.push_back(truth.pixel);
+    }
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        const PixelId from = front[i];
+        const float far = steps.at(from.x, from.y).x;
+        for (const PixelId to : {PixelId{from.x + 1, from.y}, {from.x - 1, from.y}, {from.x, from.y + 1}, {from.x, from.y - 1}}) {
+            const bool inside = to.x >= 0 && to.x < image.width && to.y >= 0 && to.y < image.height;
+            if (!inside || steps.at(to.x, to.y).x > 0 || far > static_cast<float>(furthest)) continue;
+            steps.at(to.x, to.y).x = far + 1;
+            result.at(to.x, to.y) = result.at(from.x, from.y);
+            front.push_back(to);
+        }
+    }
+    return result;
+}
+
 std::string table(std::span<const TradeRow> rows) {
     std::string html =
         "<table><tr><th>method<th>frame [ms]<th>set-up [ms]<th>tables [kB]<th>RMS<th>99 %<th>max<th>max, opacity<th>front</tr>\n";
@@ -74,16 +100,17 @@ std::string to_html(const TradeReport& report) {
     std::string html = "<!DOCTYPE html>\n<html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width\">"
                        "<title>cellproj trade: " + html_escaped(report.scene) + "</title>\n" + style +
                        "<h1>Time and error of every method</h1>\n<p>" + html_escaped(report.scene) + ". " +
-                       html_escaped(report.judged_in_words()) + " judged by rays in float64; times are medians of " +
-                       std::to_string(report.rounds) + " frames, " + html_escaped(report.backend) +
+                       html_escaped(report.judged_in_words()) + " judged by rays in float64; times: " + report.timed_in_words() +
+                       ", " + html_escaped(report.backend) +
                        ". Errors are those of colour channels, 0 … 1. Green: nothing else is both faster and more accurate.</p>\n";
     html += to_svg(report.rows) + table(report.rows);
-    html += "<h2>Pictures and errors</h2>\n<p>The largest error of a channel in each pixel, logarithmic; pixels that were not judged "
-            "are white.</p>\n" + legend() +
-            pair_of(picture(report.truth, "truth"), "", "the truth, as far as it was judged");
+    const auto shown = [&](const Image& image) { return report.whole_picture ? image : spread(image, report.truths); };
+    html += std::string("<h2>Pictures and errors</h2>\n<p>The largest error of a channel in each pixel, logarithmic; white: not judged") +
+            (report.whole_picture ? "" : ". Pixels between judged ones are shown as the nearest of them") + ".</p>\n" + legend() +
+            pair_of(picture(shown(report.truth), "truth"), "", "the truth, by rays in float64");
     for (const TradeRow& row : report.rows) {
         const std::string name = to_string(row.quality);
-        html += pair_of(picture(row.image, name), picture(error_map(row.image, report.truths), "error of " + name),
+        html += pair_of(picture(row.image, name), picture(shown(error_map(row.image, report.truths)), "error of " + name),
                         name + ": RMS " + formatted("%.1e", row.error.color.rms) + ", max " + formatted("%.1e", row.error.color.maximum));
     }
     return html + "</html>\n";

@@ -46,21 +46,23 @@ Axis axis_over(std::vector<double> values, double least, double begin, double en
     return {std::max(*low, least) / 1.5, std::max(*high, least) * 1.5, begin, end};
 }
 
-// One tick per power of ten, or at 1, 2, 5 where that would be fewer than three.
+// One tick per power of ten; at 1, 2, 5 where that would be fewer than three; at all digits where those would be.
 std::vector<double> ticks(const Axis& axis) {
-    const bool dense = axis.high / axis.low < 1000;
+    const double span = axis.high / axis.low;
+    const int step = span < 6 ? 1 : 10;
     std::vector<double> result;
     for (int power = static_cast<int>(std::floor(std::log10(axis.low))); power <= std::log10(axis.high); ++power) {
-        for (const double digit : {1.0, 2.0, 5.0}) {
+        for (int digit = 1; digit < 10; ++digit) {
+            const bool wanted = digit == 1 || digit % step == 0 || (span < 1000 && (digit == 2 || digit == 5));
             const double value = digit * std::pow(10.0, power);
-            if ((dense || digit == 1.0) && value >= axis.low && value <= axis.high) result.push_back(value);
+            if (wanted && value >= axis.low && value <= axis.high) result.push_back(value);
         }
     }
     return result;
 }
 
-std::string line(double x1, double y1, double x2, double y2) {
-    return "<line stroke=\"#e4e4e4\" x1=\"" + at(x1) + "\" y1=\"" + at(y1) + "\" x2=\"" + at(x2) + "\" y2=\"" + at(y2) + "\"/>\n";
+std::string line(double x1, double y1, double x2, double y2, const char* color = "#e4e4e4") {
+    return "<line stroke=\"" + std::string(color) + "\" x1=\"" + at(x1) + "\" y1=\"" + at(y1) + "\" x2=\"" + at(x2) + "\" y2=\"" + at(y2) + "\"/>\n";
 }
 
 std::string text(double x, double y, const char* anchor, const char* color, double size, const std::string& words,
@@ -97,7 +99,8 @@ struct Point {
     double x, y;
 };
 
-// Places labels one after another where no label and no point is; those that find no place are left out.
+// Places labels one after another where no label and no point is, with a line to the point where they are not beside it; those that
+// find no place are left out.
 class Labels {
 public:
     explicit Labels(const std::vector<Point>& points) {
@@ -106,14 +109,17 @@ public:
 
     std::string add(Point p, const std::string& words, const char* color) {
         const double wide = letter * static_cast<double>(words.size());
-        static constexpr std::array<double, 7> rises{4, -8, 16, -20, 28, -32, 40};  // of the baseline below the point
+        static constexpr std::array<double, 7> rises{4, -7, 15, -18, 26, -29, 37};  // of the baseline below the point
         for (const double rise : rises) {
             for (const bool to_the_right : {true, false}) {
                 const double x0 = to_the_right ? p.x + 8 : p.x - 8 - wide;
-                const Box box{x0, p.y + rise - label_size, x0 + wide, p.y + rise + 3};
+                const Box box{x0, p.y + rise - 9, x0 + wide, p.y + rise + 2};
                 if (!is_free(box)) continue;
                 taken_.push_back(box);
-                return text(to_the_right ? x0 : x0 + wide, p.y + rise, to_the_right ? "start" : "end", color, label_size, words);
+                const bool beside = rise > -10 && rise < 10;
+                const std::string lead =
+                    beside ? "" : line(p.x, p.y, to_the_right ? x0 - 1 : x0 + wide + 1, p.y + rise - 4, "#bbb");
+                return lead + text(to_the_right ? x0 : x0 + wide, p.y + rise, to_the_right ? "start" : "end", color, label_size, words);
             }
         }
         return "";

@@ -45,6 +45,10 @@ std::string TradeReport::judged_in_words() const {
                          : std::to_string(judged) + " pixels, evenly drawn,";
 }
 
+std::string TradeReport::timed_in_words() const {
+    return rounds == 1 ? "one frame each" : "medians of " + std::to_string(rounds) + " frames";
+}
+
 std::string to_table(const TradeReport& report) {
     std::string text = line("%-26s %9s %10s %9s  %9s %9s %9s %9s\n", "method", "frame ms", "set-up ms", "tables kB", "RMS", "99 %",
                             "max", "max alpha");
@@ -54,8 +58,8 @@ std::string to_table(const TradeReport& report) {
                      row.set_up_ms, static_cast<double>(row.table_bytes) / 1000, color.rms, color.percentile_99, color.maximum,
                      row.error.opacity.maximum, row.on_front ? " *" : "");
     }
-    return text + line("* nothing else is both faster and more accurate (RMS). %s judged, medians of %d frames, %s\n",
-                       report.judged_in_words().c_str(), report.rounds, report.backend.c_str());
+    return text + line("* nothing else is both faster and more accurate (RMS). %s judged, %s, %s\n",
+                       report.judged_in_words().c_str(), report.timed_in_words().c_str(), report.backend.c_str());
 }
 
 std::string to_csv(const TradeReport& report) {

@@ -22,6 +22,7 @@ struct TradeReport {
     std::span<const PixelTruth> truths;
 
     std::string judged_in_words() const;  // "all 4312 pixels that see the mesh"
+    std::string timed_in_words() const;   // "medians of 5 frames"
 };
 
 std::string to_table(const TradeReport& report);
