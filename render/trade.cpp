@@ -84,7 +84,7 @@ std::vector<TradeRow> measure_trade(Renderer& renderer, const Scene& scene, cons
         rows.push_back({.quality = quality,
                         .table_bytes = statistics.table_bytes,
                         .error = compare(image, truths),
-                        .image = std::move(image)});
+                        .image = options.keep_images ? std::move(image) : Image{}});
         tell();
     }
     const std::vector<FrameTimes> times = time_frames(renderer, scene, camera, size, qualities, options.rounds, tell);

@@ -23,7 +23,7 @@ struct TradeRow {
     std::size_t table_bytes = 0;  // memory of its tables
     ImageError error;
     bool on_front = false;        // no other row is at once as fast and as accurate (RMS), and better in one of them
-    Image image;
+    Image image;                  // where it was to be kept
 };
 
 // The choices that `cellproj trade` compares unless told otherwise: every kind, tables of several sizes and storages, and
@@ -35,6 +35,7 @@ std::string to_string(const Quality& quality);
 
 struct TradeOptions {
     int rounds = 5;  // ≥ 1; every round draws every choice once, so that what disturbs the machine disturbs all alike
+    bool keep_images = true;  // in the rows: 16 bytes a pixel of memory for each
     std::function<void(std::size_t done, std::size_t of)> progress = {};  // after each frame
 };
 

@@ -133,7 +133,8 @@ Quality choose_measured(Renderer& renderer, const Scene& scene, const std::vecto
     const Candidate& chosen = choice.candidates[choice.chosen];
     measured = largest(chosen.error);
     if (!choice.met) {
-        std::fprintf(stderr, "cellproj: warning: no method was within --max-error %g on the judged pixels; %s is used, off by %.2g\n",
+        std::fprintf(stderr, "cellproj: warning: no method was within --max-error %g on the judged pixels; %s is used, off by %.2g, which comes from "
+                     "the order of the cells or the target, not from the method\n",
                      max_error, to_string(chosen.quality).c_str(), measured);
     }
     return chosen.quality;

@@ -99,7 +99,8 @@ void run_trade(const TradeCommandOptions& options) {
         const auto tell = [&](std::size_t done, std::size_t of) {
             progress.set(static_cast<double>(done) / static_cast<double>(of));
         };
-        return measure_trade(*renderer, scene, camera, size, qualities, judged.pixels, {.rounds = options.rounds, .progress = tell});
+        return measure_trade(*renderer, scene, camera, size, qualities, judged.pixels,
+                             {.rounds = options.rounds, .keep_images = !options.page.empty(), .progress = tell});
     }();
     std::sort(rows.begin(), rows.end(), [](const TradeRow& a, const TradeRow& b) { return a.frame_ms < b.frame_ms; });
 
