@@ -152,7 +152,8 @@ double error_of_all_pixels(const Image& image, const Scene& scene, const Camera&
 // The choice is made on 1000 of some 23,000 pixels and a few suspects; its word is checked on all of them. Few cells of many pixels, so
 // that their light decides about the time.
 TEST(TradeChoice, KeepsItsWordOnTheWholePicture) {
-    const ImageSize size{224, 224};
+    constexpr int side = CELLPROJ_SANITIZED ? 112 : 224;
+    const ImageSize size{side, side};
     const double bound = 0.002;
     const Camera camera = testing_support::view_of_unit_cube(Camera::Projection::perspective);
     const auto renderer = make_renderer(Backend::gl_osmesa);
@@ -169,7 +170,8 @@ TEST(TradeChoice, KeepsItsWordOnTheWholePicture) {
         EXPECT_GT(choice.judged, 1000U);
         chosen.push_back(to_string(best.quality));
     }
-    EXPECT_NE(chosen[0], chosen[1]);  // a table on the ramp, for which the pieces take half as long again
+    // The pieces take half as long again as what is enough for the ramp; not where the sanitizers slow all but the drawing.
+    if (!CELLPROJ_SANITIZED) EXPECT_NE(chosen[0], chosen[1]);
 }
 
 // One cell among thousands has a scalar in a peak that no table resolves. Few pixels see it and none of the sample, by which a table
