@@ -171,7 +171,9 @@ TEST(TradeChoice, KeepsItsWordOnTheWholePicture) {
         chosen.push_back(to_string(best.quality));
     }
     // The pieces take half as long again as what is enough for the ramp; not where the sanitizers slow all but the drawing.
-    if (!CELLPROJ_SANITIZED) EXPECT_NE(chosen[0], chosen[1]);
+    if (!CELLPROJ_SANITIZED) {
+        EXPECT_NE(chosen[0], chosen[1]);
+    }
 }
 
 // One cell among thousands has a scalar in a peak that no table resolves. Few pixels see it and none of the sample, by which a table
