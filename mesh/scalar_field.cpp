@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -107,6 +108,19 @@ ScalarField scalar_by_name(const std::vector<FoundField>& all, const std::string
     return as_scalar(*found->field, found->location, parse_component(name.substr(colon + 1), *found->field, place));
 }
 
+// "Points:z": coordinates go by the name that VTK has for them, where no field has it.
+std::optional<ScalarField> coordinate_by_name(const TetMesh& mesh, const std::vector<FoundField>& all,
+                                              const std::string& name, const std::string& place) {
+    const std::size_t colon = name.rfind(':');
+    if (colon == std::string::npos || !equal_ignoring_case(name.substr(0, colon), "Points")) return std::nullopt;
+    if (find_field(all, name) || find_field(all, name.substr(0, colon))) return std::nullopt;
+    Field places{"Points", 3, {}};
+    places.values.reserve(3 * mesh.points.size());
+    for (const glm::dvec3& p : mesh.points)
+        places.values.insert(places.values.end(), {p.x, p.y, p.z});
+    return as_scalar(places, FieldLocation::points, parse_component(name.substr(colon + 1), places, place));
+}
+
 FoundField default_field(const std::vector<FoundField>& all) {
     const auto scalar =
         std::find_if(all.begin(), all.end(), [](const FoundField& one) { return one.field->components == 1; });
@@ -130,18 +144,50 @@ std::vector<double> magnitudes(const Field& field) {
     return result;
 }
 
+bool varies(const std::vector<double>& values) {
+    const ScalarRange r = range(values);
+    return r.low < r.high;
+}
+
+// Whole numbers count or mark. The rows of points that were added to the file's are means of others and tell nothing.
+bool whole_numbers(const FoundField& one, std::size_t added_points) {
+    const std::size_t added = one.location == FieldLocation::points ? added_points : 0;
+    const auto& values = one.field->values;
+    const auto end = values.end() - static_cast<std::ptrdiff_t>(added * static_cast<std::size_t>(one.field->components));
+    return std::all_of(values.begin(), end, [](double x) { return !std::isfinite(x) || x == std::floor(x); });
+}
+
 }  // namespace
+
+std::optional<std::string> field_to_look_at(const TetMesh& mesh, std::size_t added_points) {
+    const std::vector<FoundField> all = all_fields(mesh);
+    std::optional<std::string> whole;
+    for (const bool scalars : {true, false}) {
+        for (const FoundField& one : all) {
+            const Field& field = *one.field;
+            if ((field.components == 1) != scalars) continue;
+            // On cells under the name of a field on points: its name would draw that one.
+            if (find_field(all, field.name)->field != &field) continue;
+            if (!varies(scalars ? field.values : magnitudes(field))) continue;
+            if (!whole_numbers(one, added_points)) return field.name;
+            if (!whole) whole = field.name;
+        }
+    }
+    return whole;
+}
 
 ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const std::string& place) {
     const std::vector<FoundField> all = all_fields(mesh);
+    if (auto coordinate = coordinate_by_name(mesh, all, name, place)) return *std::move(coordinate);
     if (all.empty()) {
         throw Error({.kind = ErrorKind::data,
                      .place = place,
                      .expected = "at least one field on points or on cells",
                      .found = "none",
-                     .advice = "write the file with the quantity that is to be drawn"});
+                     .advice = "write the file with the quantity that is to be drawn, or draw a coordinate: --field Points:z"});
     }
     if (!name.empty()) return scalar_by_name(all, name, place);
+    if (const auto best = field_to_look_at(mesh)) return scalar_by_name(all, *best, place);
     const auto [field, location] = default_field(all);
     return as_scalar(*field, location);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,10 +28,16 @@ struct ScalarField {
 // The field called `name`, point fields before cell fields; a vector or tensor gives its magnitude (root of the sum of
 // squares), or one component of it by "name:x", "name:y", "name:z" or "name:0", "name:1", … Names that hold a colon
 // themselves are found first. Without an exact match, a match that differs in upper and lower case only is taken if it
-// is the only one. An empty name chooses the first scalar point field, then the first scalar cell field, then the first
-// field of all. Throws Error (option) when there is no such field (the message lists those that exist) or no such
+// is the only one. "Points:x", "Points:y", "Points:z" are the coordinates where no field is called so. An empty name chooses
+// `field_to_look_at`, without one the first scalar on points, on cells, then the first field of all. Throws Error (option) when there is no such field (the message lists those that exist) or no such
 // component, Error (data) when there is no field at all. `place` names the file in messages.
 ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const std::string& place);
+
+// The name of the field that somebody is likely to look for first: a scalar that varies and is not made of whole numbers only
+// (these count or mark: ids, materials, ghosts), else a vector or tensor whose magnitude varies, else whatever varies; points
+// before cells, then as they stand in the file. The last `added_points` points are no points of the file: their values are
+// means. Nothing when no field varies.
+std::optional<std::string> field_to_look_at(const TetMesh& mesh, std::size_t added_points = 0);
 
 // A field as a scalar: itself if it has one component, else the magnitude of each row.
 ScalarField as_scalar(const Field& field, FieldLocation location);

@@ -13,10 +13,6 @@ namespace cellproj {
 
 namespace {
 
-double largest(const ImageError& error) {
-    return std::max(error.color.maximum, error.opacity.maximum);
-}
-
 bool is_better(const TradeRow& a, const TradeRow& b) {
     const double error_a = a.error.color.rms, error_b = b.error.color.rms;
     return a.frame_ms <= b.frame_ms && error_a <= error_b && (a.frame_ms < b.frame_ms || error_a < error_b);
@@ -36,44 +32,65 @@ glm::vec3 heat(double value) {
 std::vector<Quality> trade_qualities() {
     std::vector<Quality> qualities;
     for (const char* method :
-         {"shirley-tuchman", "average", "average:vertices", "homogeneous", "homogeneous:vertices", "linear:8", "linear:32", "stein",
-          "preint2d:256", "preint2d-exp:256", "preint2d-exp:1024", "preint3d:32", "preint3d:64", "preint3d:128",
-          "preint3d:64:linear:uint8", "preint3d:64:linear", "preint3d:64:float16", "integral", "exact:1e-3", "exact:1e-5"}) {
+         {"shirley-tuchman", "average", "average:half", "average:vertices", "homogeneous", "homogeneous:vertices", "linear:8",
+          "linear:8:vertices", "linear:32", "stein", "preint2d:256", "preint2d-exp:256", "preint2d-exp:256:float16",
+          "preint2d-exp:256:uint8", "preint2d-exp:1024", "preint3d:32", "preint3d:64", "preint3d:128", "preint3d:64:linear:uint8",
+          "preint3d:64:linear", "preint3d:64:float16", "integral", "exact:1e-3", "exact:1e-5"}) {
         qualities.push_back({.method = parse_method(method)});
     }
+    for (const TargetFormat target : {TargetFormat::rgba8, TargetFormat::rgba16, TargetFormat::rgba16f})
+        qualities.push_back({.target = target});
     return qualities;
+}
+
+std::string to_string(const Quality& quality) {
+    const bool usual = quality.target == Quality{}.target;
+    return to_string(quality.method) + (usual ? "" : ", " + to_string(quality.target));
+}
+
+std::vector<FrameTimes> time_frames(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
+                                    std::span<const Quality> qualities, int rounds, const std::function<void()>& drawn) {
+    assert(rounds >= 1);
+    std::vector<std::vector<double>> set_up(qualities.size()), frame(qualities.size());
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t i = 0; i < qualities.size(); ++i) {
+            const Stopwatch preparing;
+            renderer.prepare(scene, qualities[i]);
+            set_up[i].push_back(preparing.ms());
+            Statistics statistics;
+            renderer.render(scene, camera, size, qualities[i], &statistics);
+            frame[i].push_back(statistics.ms.total);
+            if (drawn) drawn();
+        }
+    }
+    std::vector<FrameTimes> times;
+    for (std::size_t i = 0; i < qualities.size(); ++i)
+        times.push_back({median(std::move(set_up[i])), median(std::move(frame[i]))});
+    return times;
 }
 
 std::vector<TradeRow> measure_trade(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
                                     std::span<const Quality> qualities, std::span<const PixelTruth> truths,
                                     const TradeOptions& options) {
-    assert(options.rounds >= 1);
-    std::vector<TradeRow> rows(qualities.size());
-    std::vector<std::vector<double>> set_up(rows.size()), frame(rows.size());
-    const std::size_t frames = rows.size() * static_cast<std::size_t>(options.rounds + 1);
+    const std::size_t frames = qualities.size() * static_cast<std::size_t>(options.rounds + 1);
     std::size_t done = 0;
-    for (int round = 0; round <= options.rounds; ++round) {
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            const Stopwatch preparing;
-            renderer.prepare(scene, qualities[i]);
-            const double set_up_ms = preparing.ms();
-            Statistics statistics;
-            Image image = renderer.render(scene, camera, size, qualities[i], &statistics);
-            if (options.progress) options.progress(++done, frames);
-            if (round == 0) {
-                rows[i].quality = qualities[i];
-                rows[i].table_bytes = statistics.table_bytes;
-                rows[i].error = compare(image, truths);
-                rows[i].image = std::move(image);
-                continue;
-            }
-            set_up[i].push_back(set_up_ms);
-            frame[i].push_back(statistics.ms.total);
-        }
+    const auto tell = [&] {
+        if (options.progress) options.progress(++done, frames);
+    };
+    std::vector<TradeRow> rows;
+    for (const Quality& quality : qualities) {
+        Statistics statistics;
+        Image image = renderer.render(scene, camera, size, quality, &statistics);
+        rows.push_back({.quality = quality,
+                        .table_bytes = statistics.table_bytes,
+                        .error = compare(image, truths),
+                        .image = options.keep_images ? std::move(image) : Image{}});
+        tell();
     }
+    const std::vector<FrameTimes> times = time_frames(renderer, scene, camera, size, qualities, options.rounds, tell);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        rows[i].set_up_ms = median(std::move(set_up[i]));
-        rows[i].frame_ms = median(std::move(frame[i]));
+        rows[i].set_up_ms = times[i].set_up_ms;
+        rows[i].frame_ms = times[i].frame_ms;
     }
     mark_front(rows);
     return rows;
@@ -84,6 +101,10 @@ void mark_front(std::span<TradeRow> rows) {
         row.on_front =
             std::none_of(rows.begin(), rows.end(), [&](const TradeRow& other) { return is_better(other, row); });
     }
+}
+
+double largest(const ImageError& error) {
+    return std::max(error.color.maximum, error.opacity.maximum);
 }
 
 const TradeRow* fastest_within(std::span<const TradeRow> rows, double max_error) {

@@ -23,14 +23,19 @@ struct TradeRow {
     std::size_t table_bytes = 0;  // memory of its tables
     ImageError error;
     bool on_front = false;        // no other row is at once as fast and as accurate (RMS), and better in one of them
-    Image image;
+    Image image;                  // where it was to be kept
 };
 
-// The choices that `cellproj trade` compares unless told otherwise: every kind, tables of several sizes and storages.
+// The choices that `cellproj trade` compares unless told otherwise: every kind, tables of several sizes and storages, and
+// the formats of the framebuffer.
 std::vector<Quality> trade_qualities();
+
+// "integral", "integral, rgba8": the method, and the format of the framebuffer unless it is the usual one.
+std::string to_string(const Quality& quality);
 
 struct TradeOptions {
     int rounds = 5;  // ≥ 1; every round draws every choice once, so that what disturbs the machine disturbs all alike
+    bool keep_images = true;  // in the rows: 16 bytes a pixel of memory for each
     std::function<void(std::size_t done, std::size_t of)> progress = {};  // after each frame
 };
 
@@ -40,10 +45,22 @@ std::vector<TradeRow> measure_trade(Renderer& renderer, const Scene& scene, cons
                                     std::span<const Quality> qualities, std::span<const PixelTruth> truths,
                                     const TradeOptions& options = {});
 
+struct FrameTimes {
+    double set_up_ms = 0, frame_ms = 0;  // as in TradeRow
+};
+
+// The times alone, in the order of `qualities`, which should all have been drawn once before. `drawn` is called after each
+// frame.
+std::vector<FrameTimes> time_frames(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
+                                    std::span<const Quality> qualities, int rounds, const std::function<void()>& drawn = {});
+
 // Sets on_front of all rows.
 void mark_front(std::span<TradeRow> rows);
 
-// The row with the shortest frame whose largest colour and opacity errors are at most `max_error`; none if there is no such row.
+// The largest error of any channel, opacity included.
+double largest(const ImageError& error);
+
+// The row with the shortest frame whose `largest` error is at most `max_error`; none if there is no such row.
 const TradeRow* fastest_within(std::span<const TradeRow> rows, double max_error);
 
 // How far the colours of a picture are from the truth, pixel by pixel: red as the largest error of a channel grows from

@@ -179,6 +179,32 @@ TEST_F(CommandLine, InfoSuggestsAFieldThatVaries) {
     }
 }
 
+// A name with blanks must survive the shell; what `info` suggests is what `render` draws on its own.
+TEST_F(CommandLine, RenderDrawsWhatInfoSuggests) {
+    const std::string ids = "SCALARS id double 1\nLOOKUP_TABLE default\n1 2 3 4 5 6 7 8\nSCALARS p double 1\n"
+                            "LOOKUP_TABLE default\n0.5 1 2 3 4 5 6 7\n";
+    write("my cube.vtk", replaced(cube(), "SCALARS p double 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7\n", ids));
+    const std::string text = run("info 'my cube.vtk'").text;
+    EXPECT_NE(text.find("render 'my cube.vtk' -o picture.png --field p\n"), std::string::npos) << text;
+    ASSERT_EQ(run("render 'my cube.vtk' -o a.png --size 20x20").code, 0);
+    ASSERT_EQ(run("render 'my cube.vtk' -o b.png --size 20x20 --field p").code, 0);
+    const auto bytes = [&](const char* name) {
+        std::ifstream stream(path(name), std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    EXPECT_EQ(bytes("a.png"), bytes("b.png"));
+}
+
+TEST_F(CommandLine, AMeshWithoutFieldsIsDrawnByACoordinate) {
+    const std::string whole = cube();
+    write("bare.vtk", whole.substr(0, whole.find("POINT_DATA")));
+    const std::string text = run("info bare.vtk").text;
+    EXPECT_NE(text.find("render bare.vtk -o picture.png --field Points:z"), std::string::npos) << text;
+    expect_refused("render bare.vtk -o a.png", {"bare.vtk", "at least one field", "--field Points:z"});
+    EXPECT_EQ(run("render bare.vtk -o a.png --size 20x20 --field Points:z").code, 0);
+    EXPECT_TRUE(fs::exists(path("a.png")));
+}
+
 TEST_F(CommandLine, CellFieldsConstantOrAveraged) {
     EXPECT_EQ(run("render cube.vtk -o a.exr --size 20x20 --field rank --cell-values averaged").code, 0);
     EXPECT_EQ(run("render cube.vtk -o b.exr --size 20x20 --field U:x").code, 0);

@@ -80,6 +80,42 @@ TEST(SelectScalar, WithoutANameTakesTheFirstScalarThenTheFirstField) {
     EXPECT_EQ(select_scalar(mesh, "", "").name, "s");
 }
 
+// Ids, ghosts and constants stand first in many files (Exodus: GlobalNodeId); a vector says more than they do.
+TEST(SelectScalar, WithoutANameTakesWhatVariesAndDoesNotCount) {
+    TetMesh mesh = unit_tet();
+    mesh.point_fields = {point_scalar("id", 0), {"T", 1, {300.5, 300.5, 300.5, 300.5}}, {"bad", 1, {nan, nan, nan, nan}}};
+    EXPECT_EQ(field_to_look_at(mesh), "id");
+    mesh.point_fields.push_back({"U", 3, {0.5, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0}});
+    EXPECT_EQ(field_to_look_at(mesh), "U");
+    EXPECT_EQ(select_scalar(mesh, "", "").name, "U");
+    mesh.point_fields.push_back({"p", 1, {1, nan, 2, 3.5}});
+    EXPECT_EQ(field_to_look_at(mesh), "p");
+    EXPECT_EQ(select_scalar(mesh, "", "").name, "p");
+    // The last point is no point of the file: without it there are whole numbers only.
+    EXPECT_EQ(field_to_look_at(mesh, 1), "U");
+    EXPECT_EQ(field_to_look_at(unit_tet()), std::nullopt);
+}
+
+TEST(SelectScalar, DoesNotSuggestANameThatDrawsAnotherField) {
+    TetMesh mesh = unit_tet();
+    mesh.tets.push_back(mesh.tets[0]);
+    mesh.cell_fields = {{"p", 1, {1.5, 2.5}}};
+    EXPECT_EQ(field_to_look_at(mesh), "p");
+    mesh.point_fields = {{"p", 1, {7, 7, 7, 7}}};
+    EXPECT_EQ(field_to_look_at(mesh), std::nullopt);
+}
+
+TEST(SelectScalar, CoordinatesAreThereWithoutAnyField) {
+    TetMesh mesh = unit_tet();  // the origin and the unit points of the axes
+    EXPECT_EQ(select_scalar(mesh, "Points:z", "").values, (std::vector<double>{0, 0, 0, 1}));
+    EXPECT_EQ(select_scalar(mesh, "points:0", "").name, "Points:x");
+    EXPECT_EQ(select_scalar(mesh, "Points:y", "").location, FieldLocation::points);
+    EXPECT_NE(error_of(mesh, "Points:w").expected().find("a component of"), std::string::npos);
+    EXPECT_NE(error_of(mesh, "").advice().find("Points:z"), std::string::npos);
+    mesh.point_fields = {{"Points", 3, std::vector<double>(12, 9.0)}};
+    EXPECT_EQ(select_scalar(mesh, "Points:z", "").values, (std::vector<double>(4, 9.0)));  // a field of that name comes first
+}
+
 TEST(SelectScalar, ListsWhatThereIsWhenTheNameIsUnknown) {
     TetMesh mesh = unit_tet();
     mesh.point_fields = {point_scalar("Density", 1)};

@@ -336,6 +336,9 @@ TEST_F(TetrahedralizeCommand, SurfacesAreToldFromMeshesAndRendered) {
     EXPECT_NE(info.text.find("a surface, OFF"), std::string::npos) << info.text;
     EXPECT_NE(info.text.find("facets      4\n"), std::string::npos) << info.text;
     EXPECT_NE(info.text.find("cellproj render corner.off --tetrahedralize -o picture.png"), std::string::npos) << info.text;
+    fs::copy(folder_ / "corner.off", folder_ / "a corner.off");
+    const Outcome blank = run_program("info 'a corner.off'");
+    EXPECT_NE(blank.text.find("cellproj tetrahedralize 'a corner.off' -o 'a corner.vtu'\n"), std::string::npos) << blank.text;
     const Outcome unfilled = run_program("render corner.off -o corner.png");
     EXPECT_EQ(unfilled.code, 1);
     EXPECT_NE(unfilled.text.find("found a surface (OFF); fill it: cellproj render corner.off --tetrahedralize"), std::string::npos)

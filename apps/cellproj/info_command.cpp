@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -88,40 +87,6 @@ void print_size(const TetMesh& mesh) {
     std::printf("volume      %.6g\n", volume);
 }
 
-// What a user is likely to look for first: a scalar that varies and does not merely count or mark, else a vector that varies,
-// else anything that varies. Nothing when no field does.
-std::optional<std::string> field_to_look_at(const TetMesh& mesh, std::size_t added_points) {
-    std::optional<std::string> best;
-    int best_rank = 0;
-    for (const FieldLocation location : {FieldLocation::points, FieldLocation::cells}) {
-        for (const Field& field : location == FieldLocation::points ? mesh.point_fields : mesh.cell_fields) {
-            const ScalarRange values = range(as_scalar(field, location).values);
-            if (values.low == values.high) continue;
-            // Points added inside cells have means of numbers.
-            const std::size_t added = location == FieldLocation::points ? added_points : 0;
-            const auto end = field.values.end() - static_cast<std::ptrdiff_t>(added * static_cast<std::size_t>(field.components));
-            const bool counts = std::all_of(field.values.begin(), end, [](double x) { return x == std::floor(x); });
-            const int rank = counts ? 1 : field.components > 1 ? 2 : 3;
-            if (rank > best_rank) {
-                best_rank = rank;
-                best = field.name;
-            }
-        }
-    }
-    return best;
-}
-
-// As the shell takes it: in single quotes where it must be.
-std::string quoted(const std::string& word) {
-    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
-        return std::isalnum(c) || c >= 0x80 || std::string_view("_-./:,=+@%").find(static_cast<char>(c)) != std::string_view::npos;
-    });
-    if (plain) return word;
-    std::string result = "'";
-    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return result + "'";
-}
-
 std::string number(double x) {
     std::array<char, 32> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
@@ -149,14 +114,14 @@ std::string how_it_was_read(const InputOptions& options) {
 
 void print_first_picture(const Input& input, const InputOptions& options) {
     const std::optional<std::string> field = field_to_look_at(*input.mesh, input.report.added_points);
-    if (!field) {
-        const bool needs_solution = options.solution.empty() && input.format.starts_with("PLOT3D");
-        std::printf("\nNo picture yet: %s\n", needs_solution ? "a PLOT3D grid has its values in a solution file, give it by --q FILE"
-                                                             : "no field of this file varies over the mesh");
-        return;
+    const bool needs_solution = !field && options.solution.empty() && input.format.starts_with("PLOT3D");
+    if (needs_solution) {
+        std::printf("\nA PLOT3D grid has its values in a solution file, give it by --q FILE\n");
+    } else if (!field) {
+        std::printf("\nNo field of this file varies over the mesh\n");
     }
-    std::printf("\nA first picture:\n  cellproj render %s%s -o picture.png --field %s\n", quoted(input.name).c_str(),
-                how_it_was_read(options).c_str(), quoted(*field).c_str());
+    std::printf("\n%s:\n  cellproj render %s%s -o picture.png --field %s\n", field ? "A first picture" : "A picture of a coordinate",
+                quoted(input.name).c_str(), how_it_was_read(options).c_str(), quoted(field.value_or("Points:z")).c_str());
 }
 
 void print_info(const InputOptions& options) {

@@ -3,9 +3,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include "apps/scenes/sphere_flow.hpp"
@@ -114,6 +117,16 @@ void add_input_options(CLI::App& command, InputOptions& options) {
                        "Cells of second order and Lagrange cells: 1 cuts them at their nodes, 0 takes their corners only")
         ->check(CLI::Range(0, 1))->capture_default_str();
     add_raw_options(command, options);
+}
+
+std::string quoted(const std::string& word) {
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+        return std::isalnum(c) || c >= 0x80 || std::string_view("_-./:,=+@%").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    if (plain) return word;
+    std::string result = "'";
+    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
 }
 
 CLI::Validator finite_number() {

@@ -40,6 +40,9 @@ struct InputOptions {
 // FILE and how to read it (--q, --block, --time, --subdivide; --dims and what belongs to it), into `options`, which must live as long as the command.
 void add_input_options(CLI::App& command, InputOptions& options);
 
+// A word as the shell takes it: in single quotes where it must be.
+std::string quoted(const std::string& word);
+
 // Refuses NaN and infinity, which CLI11 takes for numbers.
 CLI::Validator finite_number();
 

@@ -14,6 +14,7 @@
 #include "progress.hpp"
 #include "render/output_file.hpp"
 #include "render/renderer.hpp"
+#include "render/trade_choice.hpp"
 #include "scene_options.hpp"
 
 namespace cellproj::cli {
@@ -27,6 +28,7 @@ struct RenderOptions {
     SceneOptions scene;
     std::filesystem::path output, stats;
     std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto";
+    std::optional<double> max_error;  // --max-error: the method is chosen by measuring
     bool verify_order = false;
     std::vector<double> background{1, 1, 1};
     double orbit_degrees = 0;
@@ -47,6 +49,13 @@ std::vector<Camera> cameras_of_pictures(const RenderOptions& options, const Inpu
         turned.push_back(orbit(cameras.front(), options.orbit_degrees * i / options.frames));
     }
     return turned;
+}
+
+// For CLI11: what is wrong with the text, nothing when it is a number above 0 and at most 1.
+std::string positive_error(std::string& text) {
+    double value = 0;
+    const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && value <= 1;
+    return good ? "" : text + " is no error above 0 and up to 1, such as 0.002";
 }
 
 // picture.png → picture_007.png when there are several.
@@ -116,13 +125,49 @@ void print_median(const std::vector<Statistics>& pictures) {
                 median_of([](const Statistics& s) { return s.ms.project; }), median_of([](const Statistics& s) { return s.ms.draw; }));
 }
 
+// What was measured, line by line, and what follows from it.
+void print_choice(const QualityChoice& choice, double max_error, const ChoiceOptions& how, std::size_t views) {
+    std::printf("--max-error %g: %zu methods measured on %zu pixels%s, medians of %d frames\n", max_error,
+                choice.candidates.size(), choice.judged, views > 1 ? " of the first view" : "", how.rounds);
+    std::printf("  %-22s %10s %10s %9s\n", "method", "max error", "RMS error", "frame ms");
+    for (std::size_t i = 0; i < choice.candidates.size(); ++i) {
+        const Candidate& c = choice.candidates[i];
+        const bool timed = largest(c.error) <= max_error;
+        char ms[32] = "-";
+        if (timed) std::snprintf(ms, sizeof ms, "%.1f", c.frame_ms);
+        std::printf("  %-22s %10.2e %10.2e %9s%s\n", to_string(c.quality.method).c_str(), largest(c.error), c.error.color.rms, ms,
+                    i == choice.chosen ? choice.met ? "  the fastest within it" : "  taken, though above it" : "");
+    }
+}
+
+Quality choose_measured(Renderer& renderer, const Scene& scene, const std::vector<Camera>& cameras, ImageSize size,
+                        double max_error, const Quality& base, double& measured) {
+    ChoiceOptions how{.base = base};
+    how.base.check_rays = 0;  // the chosen one's order is proved once
+    const QualityChoice choice = [&] {
+        const Progress progress("choosing a method");
+        return choose_quality(renderer, scene, cameras.front(), size, max_error, how);
+    }();
+    print_choice(choice, max_error, how, cameras.size());
+    const Candidate& chosen = choice.candidates[choice.chosen];
+    measured = largest(chosen.error);
+    if (!choice.met) {
+        std::fprintf(stderr, "cellproj: warning: no method was within --max-error %g on the judged pixels; %s is used, off by %.2g, which comes from "
+                     "the order of the cells or the target, not from the method\n",
+                     max_error, to_string(chosen.quality).c_str(), measured);
+    }
+    Quality quality = base;
+    quality.method = chosen.quality.method;
+    return quality;
+}
+
 void render_pictures(const RenderOptions& options) {
     // Everything that can be refused without reading the mesh comes first.
     const ImageSize size = require_possible(options.scene);
-    const Quality quality{.method = parse_method(options.method, "--method"),
-                          .target = parse_target_format(options.target, "--target"),
-                          .order = options.order == "auto" ? std::nullopt : order_method(options.order),
-                          .check_rays = options.verify_order ? rays_of_proof : 0};
+    Quality quality{.method = parse_method(options.method, "--method"),
+                    .target = parse_target_format(options.target, "--target"),
+                    .order = options.order == "auto" ? std::nullopt : order_method(options.order),
+                    .check_rays = options.verify_order ? rays_of_proof : 0};
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -133,6 +178,9 @@ void render_pictures(const RenderOptions& options) {
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
     const auto renderer = make_renderer(Backend::gl_osmesa);
+    std::optional<double> error;  // of the first view
+    if (options.max_error)
+        quality = choose_measured(*renderer, scene, cameras, size, *options.max_error, quality, error.emplace());
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
@@ -144,6 +192,7 @@ void render_pictures(const RenderOptions& options) {
         const Progress progress("rendering " + file.string());
         Statistics statistics;
         const Image image = renderer->render(scene, cameras[i], size, quality, &statistics);
+        if (i == 0) statistics.error = error;
         const Stopwatch writing;
         write(image, file, options,
               {{"Software", "cellproj " CELLPROJ_VERSION},
@@ -179,8 +228,11 @@ void add_render_command(CLI::App& app) {
         ->expected(3)->delimiter(',')->check(CLI::Range(0.0, 1.0))->capture_default_str();
     command->add_option("--bits", options->bits, "Bits per channel of a PNG: 8 or 16")
         ->check(CLI::IsMember({8, 16}))->capture_default_str();
-    command->add_option("--method", options->method, "How a ray's piece in a cell becomes light: NAME[:CHOICE…] (classify/README.md)")
+    CLI::Option* method = command->add_option("--method", options->method, "How a ray's piece in a cell becomes light: NAME[:CHOICE…] (classify/README.md)")
         ->capture_default_str();
+    command->add_option("--max-error", options->max_error,
+                        "Measure some methods on the first view and take the fastest whose largest error of a channel (0..1) is at most this")
+        ->excludes(method)->check(CLI::Validator(positive_error, "ERROR"));
     command->add_option("--target", options->target, "What cells are blended in: rgba8, rgba16, rgba16f or rgba32f")
         ->capture_default_str();
     command->add_option("--order", options->order,

@@ -94,7 +94,9 @@ void check_colors(const SceneOptions& options) {
 
 // Cell fields are exact as constants; averaged to the points they look smooth.
 ScalarField choose_field(const SceneOptions& options, const Input& input) {
-    ScalarField field = select_scalar(*input.mesh, options.field, input.name);
+    const std::string name =
+        !options.field.empty() ? options.field : field_to_look_at(*input.mesh, input.report.added_points).value_or("");
+    ScalarField field = select_scalar(*input.mesh, name, input.name);
     if (options.nan) field = with_finite_values(std::move(field), *options.nan);
     const bool averaged = field.location == FieldLocation::cells && options.cell_values == "averaged";
     return averaged ? averaged_to_points(*input.mesh, field) : field;
@@ -143,7 +145,7 @@ std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& inp
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
     add_input_options(command, options.input);
-    command.add_option("--field", options.field, "The field to draw (default: the first); vectors by magnitude, or U:x, U:y, U:z");
+    command.add_option("--field", options.field, "The field to draw (default: the one that info suggests); vectors by magnitude, or U:x; Points:z: a coordinate");
     command.add_option("--cell-values", options.cell_values, "How cell fields are drawn: constant in a cell, or averaged to the points")
         ->check(CLI::IsMember({"constant", "averaged"}))->capture_default_str();
     CLI::Option* transfer = command.add_option("--transfer", options.transfer,

@@ -82,9 +82,9 @@ double picture_volume(const Surface& surface) {
 }
 
 std::string next_commands(const std::filesystem::path& file) {
-    const std::string name = file.string();
+    const std::string name = quoted(file.string());
     return "cellproj render " + name + " --tetrahedralize -o picture.png, or cellproj tetrahedralize " + name + " -o " +
-           file.stem().string() + ".vtu";
+           quoted(file.stem().string() + ".vtu");
 }
 
 }  // namespace
@@ -168,8 +168,8 @@ void print_surface(const std::filesystem::path& file) {
         std::printf("  %-24s on points, %.6g .. %.6g\n", field.name.c_str(), values.low, values.high);
     }
     std::printf("\nA surface has no cells to render yet. To fill it:\n  cellproj render %s --tetrahedralize -o picture.png\n"
-                "  cellproj tetrahedralize %s -o %s.vtu\n",
-                name.c_str(), name.c_str(), file.stem().c_str());
+                "  cellproj tetrahedralize %s -o %s\n",
+                quoted(name).c_str(), quoted(name).c_str(), quoted(file.stem().string() + ".vtu").c_str());
 }
 
 void require_no_surface(const std::filesystem::path& file) {

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "mesh/error.hpp"
 #include "progress.hpp"
 #include "render/output_file.hpp"
+#include "render/statistics.hpp"
 #include "render/trade.hpp"
 #include "scene_options.hpp"
 #include "trade_report.hpp"
@@ -19,25 +22,68 @@ namespace {
 
 struct TradeCommandOptions {
     SceneOptions scene;
-    std::vector<std::string> methods;  // empty: all
+    std::vector<std::string> methods, targets;  // both empty: trade_qualities
     std::filesystem::path page, csv, json;
-    std::size_t sample = 20000;
+    std::optional<std::size_t> sample;
     int rounds = 5;
 };
 
+// Every method in every target; the usual one where only the other is given.
 std::vector<Quality> choose_qualities(const TradeCommandOptions& options) {
-    if (options.methods.empty()) return trade_qualities();
+    if (options.methods.empty() && options.targets.empty()) return trade_qualities();
+    std::vector<Quality> in_usual_target;
+    for (const std::string& method : options.methods) in_usual_target.push_back({.method = parse_method(method, "--method")});
+    if (options.methods.empty()) {
+        in_usual_target = trade_qualities();
+        std::erase_if(in_usual_target, [](const Quality& quality) { return quality.target != Quality{}.target; });
+    }
+    if (options.targets.empty()) return in_usual_target;
     std::vector<Quality> qualities;
-    for (const std::string& method : options.methods) qualities.push_back({.method = parse_method(method, "--method")});
+    for (const std::string& target : options.targets) {
+        for (const Quality& quality : in_usual_target)
+            qualities.push_back({.method = quality.method, .target = parse_target_format(target, "--target")});
+    }
     return qualities;
+}
+
+void check_files(const TradeCommandOptions& options) {
+    std::vector<std::filesystem::path> files{options.page, options.csv, options.json};
+    std::erase_if(files, [](const auto& file) { return file.empty(); });
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        require_writable(files[i]);
+        if (std::find(files.begin(), files.begin() + static_cast<std::ptrdiff_t>(i), files[i]) != files.begin() + static_cast<std::ptrdiff_t>(i)) {
+            throw Error({ErrorKind::option, "-o, --csv, --json", "a file for each", files[i].string() + " twice", "give another name"});
+        }
+    }
+}
+
+struct Truths {
+    std::vector<PixelTruth> pixels;
+    bool whole_picture;
+};
+
+// Of --sample pixels, or of all that see the mesh where that is affordable: where it takes less than half a minute on this machine, as
+// the usual sample tells.
+Truths find_truths(const TradeCommandOptions& options, const Scene& scene, const Camera& camera, ImageSize size) {
+    constexpr std::size_t usual_sample = 20000;
+    constexpr double affordable_ms = 30000, slack = 1.0 / 512;  // what the rasterizer's grid may do to a silhouette
+    const Progress progress("finding the truth");
+    const Reference reference(scene);
+    const std::vector<PixelId> seen = reference.sample(camera, size, std::numeric_limits<std::size_t>::max());
+    const bool thinned = size.width * static_cast<double>(size.height) > 1e6;  // by Reference::sample
+    const Stopwatch judging;
+    auto truths = reference.pixels(camera, size, reference.sample(camera, size, options.sample.value_or(usual_sample)), slack);
+    const double share = static_cast<double>(truths.size()) / static_cast<double>(std::max<std::size_t>(seen.size(), 1));
+    if (!options.sample && truths.size() < seen.size() && !thinned && judging.ms() < affordable_ms * share)
+        truths = reference.pixels(camera, size, seen, slack);
+    const bool whole_picture = !thinned && truths.size() == seen.size();
+    return {std::move(truths), whole_picture};
 }
 
 void run_trade(const TradeCommandOptions& options) {
     const ImageSize size = require_possible(options.scene);
     const std::vector<Quality> qualities = choose_qualities(options);
-    for (const auto& file : {options.page, options.csv, options.json}) {
-        if (!file.empty()) require_writable(file);
-    }
+    check_files(options);
     const LoadedScene loaded = load_scene(options.scene);
     const Scene& scene = loaded.scene;
     const Input& input = loaded.input;
@@ -46,29 +92,27 @@ void run_trade(const TradeCommandOptions& options) {
         throw Error({ErrorKind::option, "--camera", "one camera", std::to_string(cameras.size()), "give one of them"});
     }
     const Camera& camera = cameras.front();
-    const auto truths = [&] {
-        const Progress progress("finding the truth");
-        const Reference reference(scene);
-        return reference.pixels(camera, size, reference.sample(camera, size, options.sample), 1.0 / 512);
-    }();
+    const Truths judged = find_truths(options, scene, camera, size);
     const auto renderer = make_renderer(Backend::gl_osmesa);
     std::vector<TradeRow> rows = [&] {
-        Progress progress("rendering with " + std::to_string(qualities.size()) + " methods");
+        Progress progress("rendering in " + std::to_string(qualities.size()) + " ways");
         const auto tell = [&](std::size_t done, std::size_t of) {
             progress.set(static_cast<double>(done) / static_cast<double>(of));
         };
-        return measure_trade(*renderer, scene, camera, size, qualities, truths, {.rounds = options.rounds, .progress = tell});
+        return measure_trade(*renderer, scene, camera, size, qualities, judged.pixels,
+                             {.rounds = options.rounds, .keep_images = !options.page.empty(), .progress = tell});
     }();
     std::sort(rows.begin(), rows.end(), [](const TradeRow& a, const TradeRow& b) { return a.frame_ms < b.frame_ms; });
 
     const TradeReport report{.scene = input.name + ", field " + scene.field->name + ", " + std::to_string(scene.mesh->tets.size()) +
                                       " tetrahedra, " + options.scene.size,
-                             .judged = truths.size(),
+                             .judged = judged.pixels.size(),
+                             .whole_picture = judged.whole_picture,
                              .rounds = options.rounds,
                              .backend = "OpenGL on OSMesa",
                              .rows = rows,
-                             .truth = to_image(truths, size),
-                             .truths = truths};
+                             .truth = to_image(judged.pixels, size),
+                             .truths = judged.pixels};
     std::fputs(to_table(report).c_str(), stdout);
     if (!options.csv.empty()) write_text_file(options.csv, to_csv(report));
     if (!options.json.empty()) write_text_file(options.json, to_json(report) + "\n");
@@ -83,8 +127,11 @@ void add_trade_command(CLI::App& app) {
     add_scene_options(*command, options->scene);
     command->add_option("--method", options->methods, "Measure this method (again for more); default: all, several sizes")
         ->allow_extra_args(false);
-    command->add_option("--sample", options->sample, "Pixels judged by rays in float64; all that see the mesh when it has no more")
-        ->check(CLI::Range(1, 100000000))->capture_default_str();
+    command->add_option("--target", options->targets, "Blend the cells in this format (again for more): rgba8, rgba16, rgba16f or rgba32f")
+        ->allow_extra_args(false);
+    command->add_option("--sample", options->sample,
+                        "Pixels judged by rays in float64; default: all that see the mesh when that takes less than 30 s, else 20000")
+        ->check(CLI::Range(1, 100000000));
     command->add_option("--rounds", options->rounds, "Frames timed per method; the median counts")
         ->check(CLI::Range(1, 1000))->capture_default_str();
     command->add_option("-o,--output", options->page, "Write a page with table, plot, pictures and error maps (HTML)");

@@ -22,24 +22,51 @@ namespace {
 
 }  // namespace
 
+std::string formatted(const char* format, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+std::string html_escaped(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        if (c == '<') result += "&lt;";
+        else if (c == '>') result += "&gt;";
+        else if (c == '&') result += "&amp;";
+        else if (c == '"') result += "&quot;";
+        else result += c;
+    }
+    return result;
+}
+
+std::string TradeReport::judged_in_words() const {
+    return whole_picture ? "all " + std::to_string(judged) + " pixels that see the mesh"
+                         : std::to_string(judged) + " pixels, evenly drawn,";
+}
+
+std::string TradeReport::timed_in_words() const {
+    return rounds == 1 ? "one frame each" : "medians of " + std::to_string(rounds) + " frames";
+}
+
 std::string to_table(const TradeReport& report) {
     std::string text = line("%-26s %9s %10s %9s  %9s %9s %9s %9s\n", "method", "frame ms", "set-up ms", "tables kB", "RMS", "99 %",
                             "max", "max alpha");
     for (const TradeRow& row : report.rows) {
         const ErrorMeasure& color = row.error.color;
-        text += line("%-26s %9.1f %10.2f %9.0f  %9.2e %9.2e %9.2e %9.2e%s\n", to_string(row.quality.method).c_str(), row.frame_ms,
+        text += line("%-26s %9.1f %10.2f %9.0f  %9.2e %9.2e %9.2e %9.2e%s\n", to_string(row.quality).c_str(), row.frame_ms,
                      row.set_up_ms, static_cast<double>(row.table_bytes) / 1000, color.rms, color.percentile_99, color.maximum,
                      row.error.opacity.maximum, row.on_front ? " *" : "");
     }
-    return text + line("* nothing else is both faster and more accurate (RMS). %zu pixels judged, medians of %d frames, %s\n",
-                       report.judged, report.rounds, report.backend.c_str());
+    return text + line("* nothing else is both faster and more accurate (RMS). %s judged, %s, %s\n",
+                       report.judged_in_words().c_str(), report.timed_in_words().c_str(), report.backend.c_str());
 }
 
 std::string to_csv(const TradeReport& report) {
-    std::string text = "method,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front\n";
+    std::string text = "method,target,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front\n";
     for (const TradeRow& row : report.rows) {
-        text += line("%s,%.3f,%.3f,%zu,%.6e,%.6e,%.6e,%.6e,%.6e,%d\n", to_string(row.quality.method).c_str(), row.frame_ms,
-                     row.set_up_ms, row.table_bytes, row.error.color.rms, row.error.color.percentile_99,
+        text += line("%s,%s,%.3f,%.3f,%zu,%.6e,%.6e,%.6e,%.6e,%.6e,%d\n", to_string(row.quality.method).c_str(),
+                     to_string(row.quality.target).c_str(), row.frame_ms, row.set_up_ms, row.table_bytes, row.error.color.rms, row.error.color.percentile_99,
                      row.error.color.maximum, row.error.opacity.rms, row.error.opacity.maximum, row.on_front ? 1 : 0);
     }
     return text;
@@ -53,6 +80,7 @@ std::string to_json(const TradeReport& report) {
     Json rows = Json::array();
     for (const TradeRow& row : report.rows) {
         rows.push_back({{"method", to_string(row.quality.method)},
+                        {"target", to_string(row.quality.target)},
                         {"ms", {{"set_up", row.set_up_ms}, {"frame", row.frame_ms}}},
                         {"table_bytes", row.table_bytes},
                         {"error", {{"color", measure(row.error.color)}, {"opacity", measure(row.error.opacity)}}},
@@ -61,9 +89,10 @@ std::string to_json(const TradeReport& report) {
     return Json{{"scene", report.scene},
                 {"backend", report.backend},
                 {"judged_pixels", report.judged},
+                {"whole_picture", report.whole_picture},
                 {"rounds", report.rounds},
                 {"methods", std::move(rows)}}
-        .dump(2);
+        .dump(2, ' ', false, Json::error_handler_t::replace);  // names of files need not be UTF-8
 }
 
 }  // namespace cellproj::cli

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Time and error as a user meets them: `cellproj trade`, and `render --max-error`.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/folder_test.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using cellproj::testing_support::FolderTest;
+using cellproj::testing_support::Outcome;
+using cellproj::testing_support::run_program;
+
+class TradeCommand : public FolderTest {
+protected:
+    // 27 voxels of a field that is not linear in any cell.
+    void SetUp() override {
+        FolderTest::SetUp();
+        std::string voxels;
+        for (int i = 0; i < 27; ++i) voxels += static_cast<char>(i * i % 23);
+        write("v.raw", voxels);
+    }
+
+    Outcome run(const std::string& command, const std::string& options) const {
+        return run_program(folder_, command + " v.raw --dims 3 3 3 --type uint8 --size 40x40 " + options);
+    }
+
+    std::string read(const std::string& name) const {
+        std::ifstream stream(folder_ / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+
+    std::vector<std::string> files() const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+
+    // The exit code, the words in the message, and no file more than before.
+    void expect_refused(int code, const std::string& command, const std::string& options,
+                        std::initializer_list<const char*> words) const {
+        const auto before = files();
+        const Outcome outcome = run(command, options);
+        EXPECT_EQ(outcome.code, code) << options << "\n" << outcome.text;
+        for (const char* word : words) EXPECT_NE(outcome.text.find(word), std::string::npos) << word << " in: " << outcome.text;
+        EXPECT_EQ(files(), before) << options;
+    }
+};
+
+std::size_t count(const std::string& text, const std::string& word) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
+    return found;
+}
+
+TEST_F(TradeCommand, WritesTheSameTableFourTimes) {
+    const Outcome outcome =
+        run("trade", "--method average --method integral --method preint3d:8 --target rgba32f --target rgba8 --rounds 2 "
+                     "-o t.html --csv t.csv --json t.json");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_EQ(files(), (std::vector<std::string>{"t.csv", "t.html", "t.json", "v.raw"}));
+
+    const auto json = nlohmann::json::parse(read("t.json"));
+    const auto& rows = json.at("methods");
+    ASSERT_EQ(rows.size(), 6U);
+    EXPECT_EQ(json.at("rounds"), 2);
+    EXPECT_EQ(json.at("whole_picture"), true);
+    EXPECT_GT(json.at("judged_pixels"), 100);
+    std::istringstream csv(read("t.csv"));
+    std::string line;
+    std::getline(csv, line);
+    EXPECT_EQ(line, "method,target,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front");
+    double last = 0;
+    std::size_t front = 0;
+    for (const auto& row : rows) {
+        const std::string method = row.at("method"), target = row.at("target");
+        std::getline(csv, line);
+        EXPECT_EQ(line.rfind(method + "," + target + ",", 0), 0U) << line;
+        EXPECT_GE(row.at("ms").at("frame"), last);  // sorted by time
+        last = row.at("ms").at("frame");
+        front += row.at("on_front").get<bool>() ? 1 : 0;
+        const std::string label = method + (target == "rgba8" ? ", rgba8" : "");
+        EXPECT_NE(outcome.text.find(label), std::string::npos);
+        EXPECT_NE(read("t.html").find("<td>" + label + "<td>"), std::string::npos) << label;
+    }
+    EXPECT_FALSE(std::getline(csv, line)) << line;
+    EXPECT_GE(front, 1U);
+    EXPECT_NE(outcome.text.find("pixels that see the mesh judged, medians of 2 frames"), std::string::npos) << outcome.text;
+}
+
+TEST_F(TradeCommand, ThePageHoldsAllItShows) {
+    ASSERT_EQ(run("trade", "--method average --method integral --rounds 1 -o t.html").code, 0);
+    const std::string page = read("t.html");
+    EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0U);
+    EXPECT_NE(page.find("</html>"), std::string::npos);
+    EXPECT_EQ(count(page, "data:image/png;base64,"), 6U);  // the legend, the truth, and two for each method
+    EXPECT_EQ(count(page, "src="), 6U);
+    EXPECT_EQ(count(page, "://"), 1U);  // the name of SVG's language: nothing is fetched
+    for (const char* word : {"[ms]", "RMS error of the colours", "<polyline", "integral"})
+        EXPECT_NE(page.find(word), std::string::npos) << word;
+}
+
+TEST_F(TradeCommand, JudgesAsManyPixelsAsAskedFor) {
+    ASSERT_EQ(run("trade", "--method average --rounds 1 --sample 50 --json t.json").code, 0);
+    const auto json = nlohmann::json::parse(read("t.json"));
+    EXPECT_EQ(json.at("judged_pixels"), 50);
+    EXPECT_EQ(json.at("whole_picture"), false);
+}
+
+TEST_F(TradeCommand, RefusesBadArgumentsAndLeavesNothing) {
+    expect_refused(1, "trade", "--method averge -o t.html", {"--method", "\"average\""});
+    expect_refused(1, "trade", "--target rgba9 -o t.html", {"--target", "rgba8"});
+    expect_refused(1, "trade", "-o t.html --csv t.html", {"--csv", "t.html twice"});
+    expect_refused(1, "trade", "-o no/such/t.html", {"no/such"});
+    expect_refused(1, "trade", "--field q -o t.html", {"\"q\""});
+    expect_refused(1, "trade", "--transfer none.json --json t.json", {"none.json"});
+    expect_refused(2, "trade", "--rounds 0 -o t.html", {"--rounds"});
+    expect_refused(2, "trade", "--sample 0 -o t.html", {"--sample"});
+    const std::string camera = R"({"projection": "parallel", "eye": [9,2,1], "center": [1,1,1], "up": [0,0,1], "height": 4})";
+    write("two.json", "[" + camera + "," + camera + "]");
+    expect_refused(1, "trade", "--camera two.json -o t.html", {"--camera", "one camera", "2"});
+    write("old.csv", "old");
+    expect_refused(1, "trade", "--camera two.json --csv old.csv", {"--camera"});
+    EXPECT_EQ(read("old.csv"), "old");
+}
+
+TEST_F(TradeCommand, MaxErrorPrintsWhatItMeasuredAndTellsTheStatistics) {
+    const Outcome outcome = run("render", "-o a.exr --max-error 0.01 --orbit 90 --frames 2 --stats s.json");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    for (const char* words : {"--max-error 0.01", "of the first view", "integral", "exact:0.0001", "  the fastest within it"})
+        EXPECT_NE(outcome.text.find(words), std::string::npos) << "no " << words << " in:\n" << outcome.text;
+    const auto pictures = nlohmann::json::parse(read("s.json")).at("pictures");
+    EXPECT_LE(pictures.at(0).at("error"), 0.01);
+    EXPECT_TRUE(pictures.at(1).at("error").is_null());  // not measured there
+    const std::string method = pictures.at(0).at("method");
+    EXPECT_EQ(pictures.at(1).at("method"), method);
+    std::istringstream lines(outcome.text);
+    std::string line;
+    while (std::getline(lines, line) && line.find("the fastest within it") == std::string::npos) {}
+    EXPECT_EQ(line.rfind("  " + method + " ", 0), 0U) << line;
+}
+
+TEST_F(TradeCommand, MaxErrorSaysWhenNoMethodKeepsIt) {
+    const Outcome outcome = run("render", "-o a.png --target rgba8 --max-error 1e-5 --stats s.json");
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    for (const char* words : {"warning: no method was within --max-error 1e-05", "exact:1e-07", "taken, though above it"})
+        EXPECT_NE(outcome.text.find(words), std::string::npos) << "no " << words << " in:\n" << outcome.text;
+    const auto picture = nlohmann::json::parse(read("s.json")).at("pictures").at(0);
+    EXPECT_EQ(picture.at("method"), "exact:1e-07");
+    EXPECT_GT(picture.at("error"), 1e-5);
+}
+
+TEST_F(TradeCommand, MaxErrorIsAPositiveNumberAndNoMethod) {
+    for (const char* bad : {"0", "-1", "nan", "2", "small"})
+        expect_refused(2, "render", std::string("-o a.png --max-error ") + bad, {"--max-error", bad, "above 0"});
+    expect_refused(2, "render", "-o a.png --max-error 0.1 --method integral", {"--max-error", "--method"});
+}
+
+}  // namespace
