@@ -23,7 +23,9 @@ vec4 light_of_segment(float s_front, float s_back, float segment) {
         float end = rising ? clamp(ends.y, s, s_back) : clamp(ends.x, s_back, s);
         vec2 at = clamp((vec2(s, end) - ends.x) / (ends.y - ends.x), 0.0, 1.0);
         vec2 extinction = ends.z * (1.0 - at) + ends.w * at;
-        float part = range > 0.0 ? segment * (abs(end - s) / range) : segment;
+        // With one scalar all along, all of the segment lies in the piece that holds it, and nothing in those before.
+        bool reached = range > 0.0 || s < ends.y || piece == int(v_pieces.y);
+        float part = range > 0.0 ? segment * (abs(end - s) / range) : (reached ? segment : 0.0);
         float depth = part * 0.5 * (extinction.x + extinction.y);
         float r = depth > 0.0 ? (extinction.y - extinction.x) / (extinction.y + extinction.x) : 0.0;
 
@@ -42,7 +44,7 @@ vec4 light_of_segment(float s_front, float s_back, float segment) {
 
         bool deep = depth_before + depth * share >= deepest;
         if (whole || deep) depth_before += depth;
-        if (deep || (whole && end == s_back)) break;
+        if (deep || (whole && end == s_back && reached)) break;
         begin = whole ? 0.0 : behind;
         taken = whole ? 0.0 : taken;
         s = whole ? end : s;
