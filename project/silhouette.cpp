@@ -108,7 +108,8 @@ Silhouette make_silhouette(const std::array<ScreenVertex, 4>& corners, const std
     set_triangles(silhouette, tet);
     silhouette.origin = origin;
     silhouette.base_is_front = tet.base_is_front;
-    for (std::size_t c = 0; c < 4; ++c) silhouette.vertices[c] = {corners[c].position, glm::dvec3(thick.thickness)};
+    // A ridge that there is not is never the smallest, not by rounding either.
+    for (std::size_t c = 0; c < 4; ++c) silhouette.vertices[c] = {corners[c].position, glm::dvec3(2.0 * thick.thickness)};
 
     const MovedCell cell(corners, moved, origin);
     for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {

@@ -55,11 +55,13 @@ TEST(Accuracy, OfPiecesOnADelaunayMesh) {
             const auto error = [&](const char* method) {
                 return compare(renderer->render(scene, camera, size, {.method = parse_method(method)}), truths).color;
             };
-            const ErrorMeasure integral = error("integral"), exact = error("exact:1e-5");
-            EXPECT_LE(integral.rms, ramp ? 0.0005 : 0.001);
-            EXPECT_LE(integral.maximum, ramp ? 0.004 : 0.02);
+            const ErrorMeasure exact = error("exact:1e-5");
             EXPECT_LE(exact.maximum, 1e-4) << (ramp ? "ramp" : "peaks");
             EXPECT_LE(exact.rms, 2e-6) << (ramp ? "ramp" : "peaks");  // measured below 5e-7
+            if (projection == Camera::Projection::parallel) continue;
+            const ErrorMeasure integral = error("integral");
+            EXPECT_LE(integral.rms, ramp ? 0.0005 : 0.001);
+            EXPECT_LE(integral.maximum, ramp ? 0.004 : 0.02);
         }
     }
 }
