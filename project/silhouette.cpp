@@ -78,12 +78,12 @@ private:
     template <class Place>
     FaceTerms through(const std::array<std::size_t, 3>& corners, Place place) const {
         const auto [a, b, c] = corners;
-        const glm::dvec2 ab = place(b) - place(a), ac = place(c) - place(a);
-        const double area = cross(ab, ac);
+        const glm::dvec2 at = place(a), ab = place(b) - at, ac = place(c) - at;
+        const double share = 1.0 / cross(ab, ac);
         const auto plane = [&](double at_a, double at_b, double at_c) {
             const double rise_b = at_b - at_a, rise_c = at_c - at_a;
-            const glm::dvec2 gradient{(rise_b * ac.y - rise_c * ab.y) / area, (rise_c * ab.x - rise_b * ac.x) / area};
-            return ScreenPlane{at_a + glm::dot(gradient, origin_ - place(a)), gradient};
+            const glm::dvec2 gradient{(rise_b * ac.y - rise_c * ab.y) * share, (rise_c * ab.x - rise_b * ac.x) * share};
+            return ScreenPlane{at_a + glm::dot(gradient, origin_ - at), gradient};
         };
         return {plane(corners_[a].depth, corners_[b].depth, corners_[c].depth),
                 plane(corners_[a].scalar, corners_[b].scalar, corners_[c].scalar)};
