@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sort/cycles.hpp"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "sort/convex_part.hpp"
+#include "sort/strong_components.hpp"
+
+namespace cellproj {
+
+namespace {
+
+constexpr auto none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t candidates_tried = 48;  // planes weighed per cut
+constexpr std::size_t parts_weighed = 512;    // parts that a plane is weighed by, at most
+
+std::array<glm::dvec3, 4> corners(const TetMesh& mesh, CellId cell) {
+    const auto& t = mesh.tets[cell];
+    return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
+}
+
+double distance(const Eye& eye, const glm::dvec3& point) {
+    return eye.at_infinity ? -glm::dot(eye.xyz, point) : glm::distance(eye.xyz, point);
+}
+
+struct Plane {
+    glm::dvec3 a, b, c;
+};
+
+Plane face_plane(const TetMesh& mesh, CellId cell, int face) {
+    const auto v = face_vertices(mesh.tets[cell], face);
+    return {mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]};
+}
+
+// Heights of four points over a plane, with exact signs: where rounding gets a sign wrong, the point lies in the plane as far
+// as heights can tell.
+CornerHeights heights_over(const Plane& plane, const std::array<glm::dvec3, 4>& points) {
+    const glm::dvec3 normal = glm::cross(plane.b - plane.a, plane.c - plane.a);
+    CornerHeights heights;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const double height = glm::dot(normal, points[i] - plane.a);
+        const int sign = orientation(plane.a, plane.b, plane.c, points[i]);
+        heights[i] = (sign > 0 && height > 0) || (sign < 0 && height < 0) ? height : 0.0;
+    }
+    return heights;
+}
+
+// The relations among a set of cells, as a graph over their places in the set: from the one behind to the one in front.
+class Relations {
+public:
+    Relations(const TetMesh& mesh, const Adjacency& adjacency, std::span<const CellId> cells, const Eye& eye)
+        : mesh_(mesh), adjacency_(adjacency), cells_(cells), eye_(eye), place_(mesh.tets.size(), none) {
+        for (std::uint32_t i = 0; i < cells.size(); ++i)
+            place_[cells[i]] = i;
+    }
+
+    ArcRows graph(std::span<const OrderArc> arcs) const {
+        std::vector<std::array<std::uint32_t, 4>> in_front(cells_.size());
+        using Range = oneapi::tbb::blocked_range<std::size_t>;
+        oneapi::tbb::parallel_for(Range(0, cells_.size(), 2048), [&](const Range& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                in_front[i] = neighbours_in_front(cells_[i]);
+        });
+        std::vector<NodeArc> all;
+        all.reserve(2 * cells_.size() + arcs.size());
+        for (std::uint32_t i = 0; i < cells_.size(); ++i) {
+            for (const std::uint32_t j : in_front[i]) {
+                if (j != none) all.push_back({i, j});
+            }
+        }
+        for (const OrderArc& arc : arcs) {
+            const std::uint32_t behind = place_[arc.behind], front = place_[arc.front];
+            if (behind != none && front != none) all.push_back({behind, front});
+        }
+        return to_rows(all, cells_.size());
+    }
+
+private:
+    int cell_sign(CellId cell) const {
+        const auto p = corners(mesh_, cell);
+        return orientation(p[0], p[1], p[2], p[3]);
+    }
+
+    // Whether the eye lies beyond a face of a cell (+1), on the cell's side (−1) or in its plane (0).
+    int beyond(CellId cell, int cell_orientation, int face) const {
+        const Plane plane = face_plane(mesh_, cell, face);
+        return cell_orientation * side_of_plane(eye_, plane.a, plane.b, plane.c);
+    }
+
+    std::array<std::uint32_t, 4> neighbours_in_front(CellId cell) const {
+        std::array<std::uint32_t, 4> found{none, none, none, none};
+        const int own = cell_sign(cell);
+        for (std::size_t face = 0; face < 4; ++face) {
+            const CellId other = adjacency_.neighbours[cell][face];
+            if (other == no_cell || place_[other] == none) continue;
+            if (own != 0) {
+                if (beyond(cell, own, static_cast<int>(face)) > 0) found[face] = place_[other];
+                continue;
+            }
+            // A flat cell has no sides; its neighbour says on which of its own it lies.
+            const auto& back = adjacency_.neighbours[other];
+            const auto at = std::find(back.begin(), back.end(), cell) - back.begin();
+            if (beyond(other, cell_sign(other), static_cast<int>(at)) < 0) found[face] = place_[other];
+        }
+        return found;
+    }
+
+    const TetMesh& mesh_;
+    const Adjacency& adjacency_;
+    std::span<const CellId> cells_;
+    const Eye& eye_;
+    std::vector<std::uint32_t> place_;  // #T, or none
+};
+
+// A cell or what is left of it after cuts.
+struct Part {
+    std::uint32_t node;  // of the graph
+    bool is_whole;
+    ConvexPart shape;  // empty for a whole cell
+};
+
+class Resolver {
+public:
+    Resolver(const TetMesh& mesh, std::span<const CellId> cells, const ArcRows& graph, const Eye& eye, ResolvedCycles& result)
+        : mesh_(mesh), cells_(cells), graph_(graph), eye_(eye), result_(result), slot_(cells.size(), none),
+          is_split_(cells.size(), false) {}
+
+    // Puts the cells of one component into the order.
+    void resolve(std::span<const std::uint32_t> component) {
+        if (component.size() == 1) {
+            result_.items.push_back(cells_[component[0]]);
+            return;
+        }
+        ++result_.cycles;
+        std::size_t room = (cycle_growth - 1) * component.size() + 64;  // how many cuts are left
+        std::vector<Part> all;
+        for (const std::uint32_t node : component)
+            all.push_back({node, true, {}});
+        struct Task {
+            std::vector<Part> parts;
+            bool is_component;
+        };
+        std::vector<Task> tasks;  // the farthest last
+        tasks.push_back({std::move(all), true});
+        while (!tasks.empty()) {
+            Task task = std::move(tasks.back());
+            tasks.pop_back();
+            if (task.parts.size() == 1) {
+                emit(task.parts[0]);
+            } else if (!task.is_component) {
+                auto groups = components_of(std::move(task.parts));
+                for (auto group = groups.rbegin(); group != groups.rend(); ++group)
+                    tasks.push_back({std::move(*group), true});
+            } else if (auto halves = cut_once(task.parts, room)) {
+                tasks.push_back({std::move(halves->near), false});
+                tasks.push_back({std::move(halves->far), false});
+            } else {
+                emit_by_depth(std::move(task.parts));
+            }
+        }
+    }
+
+private:
+    struct Halves {
+        std::vector<Part> far, near;
+    };
+
+    std::vector<std::vector<Part>> components_of(std::vector<Part> parts) {
+        for (std::uint32_t i = 0; i < parts.size(); ++i)
+            slot_[parts[i].node] = i;
+        std::vector<NodeArc> arcs;
+        for (std::uint32_t i = 0; i < parts.size(); ++i) {
+            for (const std::uint32_t target : graph_.from(parts[i].node)) {
+                if (slot_[target] != none) arcs.push_back({i, slot_[target]});
+            }
+        }
+        for (const Part& part : parts)
+            slot_[part.node] = none;
+        const Components found = strong_components(to_rows(arcs, parts.size()));
+        std::vector<std::vector<Part>> groups(found.size());
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            for (const std::uint32_t i : found[k])
+                groups[k].push_back(std::move(parts[i]));
+        }
+        return groups;
+    }
+
+    PlaneSides sides_of(const Part& part, const CornerHeights& heights) const {
+        static const ConvexPart whole = whole_cell();
+        return sides(part.is_whole ? whole : part.shape, heights);
+    }
+
+    CornerHeights part_heights(const Part& part, const Plane& plane) const {
+        return heights_over(plane, corners(mesh_, cells_[part.node]));
+    }
+
+    // Of planes that leave something on both sides, one that cuts few parts and halves the rest. 0 cuts of two cells are enough
+    // in a pair; in a long cycle the balance keeps the tree low. Nothing when no plane parts them: the cells overlap.
+    struct Choice {
+        Plane plane;
+        double cost;
+    };
+    std::optional<Choice> best_plane(const std::vector<Part>& parts, std::size_t candidates) const {
+        std::optional<Choice> best;
+        const std::size_t faces = 4 * parts.size(), tried = std::min(faces, candidates);
+        const std::size_t step = parts.size() / parts_weighed + 1;
+        for (std::size_t k = 0; k < tried; ++k) {
+            const std::size_t i = faces * k / tried;
+            const Plane plane = face_plane(mesh_, cells_[parts[i / 4].node], static_cast<int>(i % 4));
+            std::size_t below = 0, above = 0, both = 0;
+            for (std::size_t p = 0; p < parts.size(); p += step) {
+                const PlaneSides side = sides_of(parts[p], part_heights(parts[p], plane));
+                below += side.below && !side.above ? 1 : 0;
+                above += side.above && !side.below ? 1 : 0;
+                both += side.above && side.below ? 1 : 0;
+            }
+            if (below + both == 0 || above + both == 0) continue;
+            const double cost = 2.0 * static_cast<double>(both) + std::abs(static_cast<double>(above) - static_cast<double>(below));
+            if (!best || cost < best->cost) best = Choice{plane, cost};
+        }
+        return best;
+    }
+
+    std::optional<Halves> cut_once(std::vector<Part>& parts, std::size_t& room) {
+        auto choice = best_plane(parts, candidates_tried);
+        if (!choice) choice = best_plane(parts, 4 * parts.size());
+        if (!choice) return std::nullopt;
+        const Plane& plane = choice->plane;
+        const bool eye_above = side_of_plane(eye_, plane.a, plane.b, plane.c) >= 0;
+        Halves halves;
+        std::size_t cuts = 0;
+        std::vector<CornerHeights> heights;
+        std::vector<PlaneSides> side;
+        for (const Part& part : parts) {
+            heights.push_back(part_heights(part, plane));
+            side.push_back(sides_of(part, heights.back()));
+            cuts += side.back().below && side.back().above ? 1 : 0;
+        }
+        if (cuts > room) return std::nullopt;
+        room -= cuts;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            Part& part = parts[i];
+            if (side[i].below && side[i].above) {
+                result_.split_cells += is_split_[part.node] ? 0 : 1;
+                is_split_[part.node] = true;
+                CutPart two = cut(part.is_whole ? whole_cell() : part.shape, heights[i]);
+                Part below{part.node, false, std::move(two.below)}, above{part.node, false, std::move(two.above)};
+                (eye_above ? halves.far : halves.near).push_back(std::move(below));
+                (eye_above ? halves.near : halves.far).push_back(std::move(above));
+            } else {
+                (side[i].above == eye_above ? halves.near : halves.far).push_back(std::move(part));
+            }
+        }
+        return halves;
+    }
+
+    void emit(const Part& part) {
+        const CellId cell = cells_[part.node];
+        if (part.is_whole) {
+            result_.items.push_back(cell);
+            return;
+        }
+        const auto tets = tetrahedra(part.shape);
+        for (const std::size_t i : back_to_front(cell, tets)) {
+            result_.items.push_back(static_cast<std::uint32_t>(mesh_.tets.size() + result_.pieces.size()));
+            result_.pieces.push_back({cell, tets[i]});
+        }
+    }
+
+    // The tetrahedra of one convex part: those that share a face are ordered by its plane. Few, and acyclic (convex_part.cpp).
+    std::vector<std::size_t> back_to_front(CellId cell, const std::vector<std::array<glm::dvec4, 4>>& tets) const {
+        const auto p = corners(mesh_, cell);
+        const auto place = [&](const glm::dvec4& w) {
+            return p[0] + (w[1] * (p[1] - p[0]) + w[2] * (p[2] - p[0]) + w[3] * (p[3] - p[0]));
+        };
+        std::vector<NodeArc> arcs;
+        for (std::uint32_t i = 0; i < tets.size(); ++i) {
+            for (std::uint32_t j = 0; j < tets.size(); ++j) {
+                if (i == j) continue;
+                std::array<std::size_t, 4> shared{};
+                std::size_t count = 0, apex = 0;
+                for (std::size_t k = 0; k < 4; ++k) {
+                    const bool is_shared = std::find(tets[j].begin(), tets[j].end(), tets[i][k]) != tets[j].end();
+                    if (is_shared) shared[count++] = k;
+                    else apex = k;
+                }
+                if (count != 3) continue;
+                const glm::dvec3 a = place(tets[i][shared[0]]), b = place(tets[i][shared[1]]), c = place(tets[i][shared[2]]);
+                if (side_of_plane(eye_, a, b, c) * orientation(a, b, c, place(tets[i][apex])) < 0) arcs.push_back({i, j});
+            }
+        }
+        const Components order = strong_components(to_rows(arcs, tets.size()));
+        return {order.members.begin(), order.members.end()};
+    }
+
+    void emit_by_depth(std::vector<Part> parts) {
+        std::vector<std::pair<double, std::size_t>> by_depth;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const auto p = corners(mesh_, cells_[parts[i].node]);
+            glm::dvec4 middle(0.25);
+            if (!parts[i].is_whole) {
+                middle = glm::dvec4(0);
+                for (const glm::dvec4& w : parts[i].shape.vertices)
+                    middle += w / static_cast<double>(parts[i].shape.vertices.size());
+            }
+            const glm::dvec3 at = p[0] + (middle[1] * (p[1] - p[0]) + middle[2] * (p[2] - p[0]) + middle[3] * (p[3] - p[0]));
+            by_depth.emplace_back(-distance(eye_, at), i);
+        }
+        std::sort(by_depth.begin(), by_depth.end());
+        for (const auto& [depth, i] : by_depth)
+            emit(parts[i]);
+        result_.unordered += parts.size();
+    }
+
+    const TetMesh& mesh_;
+    std::span<const CellId> cells_;
+    const ArcRows& graph_;
+    const Eye& eye_;
+    ResolvedCycles& result_;
+    std::vector<std::uint32_t> slot_;  // #nodes: where a node stands among the parts at hand, or none
+    std::vector<bool> is_split_;       // #nodes
+};
+
+}  // namespace
+
+ResolvedCycles resolve_cycles(const TetMesh& mesh, const Adjacency& adjacency, std::span<const CellId> cells,
+                              std::span<const OrderArc> arcs, const Eye& eye) {
+    const ArcRows graph = Relations(mesh, adjacency, cells, eye).graph(arcs);
+    const Components components = strong_components(graph);
+    ResolvedCycles result;
+    result.items.reserve(cells.size());
+    Resolver resolver(mesh, cells, graph, eye, result);
+    for (std::size_t k = 0; k < components.size(); ++k)
+        resolver.resolve(components[k]);
+    return result;
+}
+
+}  // namespace cellproj
