@@ -10,8 +10,12 @@
 
 namespace cellproj {
 
-// The faces of the cells with volume behind which there is no cell with volume: nothing, or a flat cell, which is no obstacle.
-// In cell order. Parallel.
+// Whether two cells that share a face both have volume and lie on different sides of it, by exact signs. Only then can the plane of
+// the face say which of them hides the other.
+bool separates(const TetMesh& mesh, CellId cell, int face, CellId other);
+
+// The faces of cells with volume that do not separate them from a neighbour: there is none, or it is flat and no obstacle, or it
+// lies on the same side. In cell order. Parallel.
 std::vector<BoundaryFace> order_boundary(const TetMesh& mesh, const Adjacency& adjacency);
 
 }  // namespace cellproj

@@ -160,7 +160,16 @@ void find_extent(const TetMesh& mesh, const Rays& rays, SeenFace& face) {
     const glm::dvec3 n = glm::cross(grid.dx, grid.dy);
     const double plane = glm::dot(n, grid.corner - grid.eye.xyz);
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (const glm::dvec3& p : places(mesh, face)) {
+    const auto corners = places(mesh, face);
+    // Every ray goes to the side of the eye where the pixels are.
+    face.first_row = 0;
+    face.last_row = -1;
+    if (!rays.parallel() && std::all_of(corners.begin(), corners.end(), [&](const glm::dvec3& p) {
+            const glm::dvec3 relative = p - grid.eye.xyz;
+            return glm::dot(n, relative) * plane < -rounding * std::abs(plane) * size_of(relative) * size_of(grid.dx) * size_of(grid.dy);
+        }))
+        return;
+    for (const glm::dvec3& p : corners) {
         // The point on the plane of the pixels that hides p.
         glm::dvec3 on_plane;
         if (rays.parallel()) {

@@ -12,6 +12,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "sort/boundary.hpp"
 #include "sort/convex_part.hpp"
 #include "sort/strong_components.hpp"
 
@@ -103,7 +104,10 @@ private:
             const CellId other = adjacency_.neighbours[cell][face];
             if (other == no_cell || place_[other] == none) continue;
             if (own != 0) {
-                if (beyond(cell, own, static_cast<int>(face)) > 0) found[face] = place_[other];
+                // Cells on the same side of their face overlap, by rounding or by mistake.
+                if (beyond(cell, own, static_cast<int>(face)) > 0 &&
+                    (cell_sign(other) == 0 || separates(mesh_, cell, static_cast<int>(face), other)))
+                    found[face] = place_[other];
                 continue;
             }
             // A flat cell has no sides; its neighbour says on which of its own it lies.

@@ -157,8 +157,8 @@ TetMesh overlapping_sticks() {
         const glm::dvec3 along(std::cos(angle), std::sin(angle), 0), across(-along.y, along.x, 0), up(0, 0, 1);
         // Past the middle on one side; from low to high.
         const glm::dvec3 middle = 0.25 * across;
-        append_cell(mesh, {middle - along - 0.3 * up, middle - along - 0.3 * up + 0.05 * across + 0.05 * up,
-                           middle + along + 0.3 * up - 0.05 * across, middle + along + 0.3 * up + 0.05 * up});
+        const glm::dvec3 low = middle - along - 0.3 * up, high = middle + along + 0.3 * up;
+        append_cell(mesh, {low - 0.1 * across, low + 0.1 * across, high - 0.05 * up, high + 0.05 * up});
     }
     orient_cells(mesh);
     return mesh;
@@ -185,9 +185,9 @@ TetMesh twisted_mesh(int n, int whirls, std::uint64_t seed) {
     TetMesh mesh = grid_mesh(n, 0.1, seed);
     for (int i = 0; i < whirls; ++i) {
         const glm::dvec3 center(inside(random), inside(random), inside(random));
-        const double radius = 2.2 / n;
+        const double radius = 4.5 / n;
         // The angle that just keeps all cells positive, from strong to weak.
-        for (double angle = 3.0; angle > 0.1; angle *= 0.8) {
+        for (double angle = 9.0; angle > 0.1; angle *= 0.8) {
             TetMesh turned = mesh;
             for (auto& p : turned.points) {
                 const glm::dvec3 d = p - center;
@@ -213,9 +213,9 @@ TetMesh damaged_mesh(int n, int each, std::uint64_t seed) {
     const auto sound = static_cast<CellId>(mesh.tets.size());
     const auto any_cell = [&] { return mesh.tets[random() % sound]; };
     for (int i = 0; i < each; ++i) {
-        // Flat: three vertices of a cell and the middle of two of them, exact as they are; or a quadrangle of the cube's side.
+        // Flat: a face with one of its vertices again, as a point of its own; a quadrangle of the cube's side.
         const auto t = any_cell();
-        mesh.points.push_back(0.5 * mesh.points[t[0]] + 0.5 * mesh.points[t[1]]);
+        mesh.points.push_back(mesh.points[t[0]]);
         mesh.tets.push_back({t[0], t[1], t[2], static_cast<VertexId>(mesh.points.size() - 1)});
         const auto side = static_cast<VertexId>(n + 1);
         const VertexId corner = static_cast<VertexId>(random() % static_cast<unsigned>(n)) +
