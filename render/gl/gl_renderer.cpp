@@ -158,8 +158,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.backend_version = driver_version();
     statistics.order = to_string(order_report.method);
     if (out) {  // the proof of the order is no part of the frame
-        statistics.counts.order_violations =
-            count_order_violations(*scene.mesh, prepared_->sorter().adjacency(), order, camera.viewpoint());
+        statistics.counts.order_violations = prepared_->sorter().count_violations(order, camera.viewpoint());
         *out = std::move(statistics);
     }
     return image;
