@@ -8,11 +8,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
-#include "sort/boundary.hpp"
 #include "sort/convex_part.hpp"
 #include "sort/strong_components.hpp"
 
@@ -55,88 +55,48 @@ CornerHeights heights_over(const Plane& plane, const std::array<glm::dvec3, 4>& 
     return heights;
 }
 
-// The relations among a set of cells, as a graph over their places in the set: from the one behind to the one in front.
-class Relations {
-public:
-    Relations(const TetMesh& mesh, const Adjacency& adjacency, std::span<const CellId> cells, const Eye& eye)
-        : mesh_(mesh), adjacency_(adjacency), cells_(cells), eye_(eye), place_(mesh.tets.size(), none) {
-        for (std::uint32_t i = 0; i < cells.size(); ++i)
-            place_[cells[i]] = i;
-    }
-
-    ArcRows graph(std::span<const OrderArc> arcs) const {
-        std::vector<std::array<std::uint32_t, 4>> in_front(cells_.size());
-        using Range = oneapi::tbb::blocked_range<std::size_t>;
-        oneapi::tbb::parallel_for(Range(0, cells_.size(), 2048), [&](const Range& range) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i)
-                in_front[i] = neighbours_in_front(cells_[i]);
-        });
-        std::vector<NodeArc> all;
-        all.reserve(2 * cells_.size() + arcs.size());
-        for (std::uint32_t i = 0; i < cells_.size(); ++i) {
-            for (const std::uint32_t j : in_front[i]) {
-                if (j != none) all.push_back({i, j});
+// The relations among a set of cells, from the one behind to the one in front, between their numbers in the set.
+ArcRows relations_among(const CellGraph& graph, std::span<const CellId> places, std::span<const OrderArc> arcs, const Eye& eye) {
+    std::vector<std::uint32_t> number(graph.size() + 1, none);
+    for (std::uint32_t i = 0; i < places.size(); ++i)
+        number[places[i]] = i;
+    std::vector<std::array<std::uint32_t, 4>> in_front(places.size());
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    oneapi::tbb::parallel_for(Range(0, places.size(), 2048), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            for (std::size_t face = 0; face < 4; ++face) {
+                const std::uint32_t other = number[graph.neighbours(places[i])[face]];
+                const bool hides = other != none && graph.beyond(eye, places[i], static_cast<int>(face)) > 0;
+                in_front[i][face] = hides ? other : none;
             }
         }
-        for (const OrderArc& arc : arcs) {
-            const std::uint32_t behind = place_[arc.behind], front = place_[arc.front];
-            if (behind != none && front != none) all.push_back({behind, front});
+    });
+    std::vector<NodeArc> all;
+    all.reserve(2 * places.size() + arcs.size());
+    for (std::uint32_t i = 0; i < places.size(); ++i) {
+        for (const std::uint32_t j : in_front[i]) {
+            if (j != none) all.push_back({i, j});
         }
-        return to_rows(all, cells_.size());
     }
-
-private:
-    int cell_sign(CellId cell) const {
-        const auto p = corners(mesh_, cell);
-        return orientation(p[0], p[1], p[2], p[3]);
+    for (const OrderArc& arc : arcs) {
+        const std::uint32_t behind = number[arc.behind], front = number[arc.front];
+        if (behind != none && front != none) all.push_back({behind, front});
     }
-
-    // Whether the eye lies beyond a face of a cell (+1), on the cell's side (−1) or in its plane (0).
-    int beyond(CellId cell, int cell_orientation, int face) const {
-        const Plane plane = face_plane(mesh_, cell, face);
-        return cell_orientation * side_of_plane(eye_, plane.a, plane.b, plane.c);
-    }
-
-    std::array<std::uint32_t, 4> neighbours_in_front(CellId cell) const {
-        std::array<std::uint32_t, 4> found{none, none, none, none};
-        const int own = cell_sign(cell);
-        for (std::size_t face = 0; face < 4; ++face) {
-            const CellId other = adjacency_.neighbours[cell][face];
-            if (other == no_cell || place_[other] == none) continue;
-            if (own != 0) {
-                // Cells on the same side of their face overlap, by rounding or by mistake.
-                if (beyond(cell, own, static_cast<int>(face)) > 0 &&
-                    (cell_sign(other) == 0 || separates(mesh_, cell, static_cast<int>(face), other)))
-                    found[face] = place_[other];
-                continue;
-            }
-            // A flat cell has no sides; its neighbour says on which of its own it lies.
-            const auto& back = adjacency_.neighbours[other];
-            const auto at = std::find(back.begin(), back.end(), cell) - back.begin();
-            if (beyond(other, cell_sign(other), static_cast<int>(at)) < 0) found[face] = place_[other];
-        }
-        return found;
-    }
-
-    const TetMesh& mesh_;
-    const Adjacency& adjacency_;
-    std::span<const CellId> cells_;
-    const Eye& eye_;
-    std::vector<std::uint32_t> place_;  // #T, or none
-};
+    return to_rows(all, places.size());
+}
 
 // A cell or what is left of it after cuts.
 struct Part {
-    std::uint32_t node;  // of the graph
+    std::uint32_t node;  // of the relations
     bool is_whole;
     ConvexPart shape;  // empty for a whole cell
 };
 
 class Resolver {
 public:
-    Resolver(const TetMesh& mesh, std::span<const CellId> cells, const ArcRows& graph, const Eye& eye, ResolvedCycles& result)
-        : mesh_(mesh), cells_(cells), graph_(graph), eye_(eye), result_(result), slot_(cells.size(), none),
-          is_split_(cells.size(), false) {}
+    Resolver(const TetMesh& mesh, std::vector<CellId> cells, const ArcRows& relations, const Eye& eye, ResolvedCycles& result)
+        : mesh_(mesh), cells_(std::move(cells)), relations_(relations), eye_(eye), result_(result), slot_(cells_.size(), none),
+          is_split_(cells_.size(), false) {}
 
     // Puts the cells of one component into the order.
     void resolve(std::span<const std::uint32_t> component) {
@@ -145,6 +105,7 @@ public:
             return;
         }
         ++result_.cycles;
+        result_.cyclic_cells += component.size();
         std::size_t room = (cycle_growth - 1) * component.size() + 64;  // how many cuts are left
         std::vector<Part> all;
         for (const std::uint32_t node : component)
@@ -183,7 +144,7 @@ private:
             slot_[parts[i].node] = i;
         std::vector<NodeArc> arcs;
         for (std::uint32_t i = 0; i < parts.size(); ++i) {
-            for (const std::uint32_t target : graph_.from(parts[i].node)) {
+            for (const std::uint32_t target : relations_.from(parts[i].node)) {
                 if (slot_[target] != none) arcs.push_back({i, slot_[target]});
             }
         }
@@ -326,8 +287,8 @@ private:
     }
 
     const TetMesh& mesh_;
-    std::span<const CellId> cells_;
-    const ArcRows& graph_;
+    std::vector<CellId> cells_;  // #nodes
+    const ArcRows& relations_;
     const Eye& eye_;
     ResolvedCycles& result_;
     std::vector<std::uint32_t> slot_;  // #nodes: where a node stands among the parts at hand, or none
@@ -336,13 +297,17 @@ private:
 
 }  // namespace
 
-ResolvedCycles resolve_cycles(const TetMesh& mesh, const Adjacency& adjacency, std::span<const CellId> cells,
-                              std::span<const OrderArc> arcs, const Eye& eye) {
-    const ArcRows graph = Relations(mesh, adjacency, cells, eye).graph(arcs);
-    const Components components = strong_components(graph);
+ResolvedCycles resolve_cycles(const CellGraph& graph, std::span<const CellId> places, std::span<const OrderArc> arcs,
+                              const Eye& eye) {
+    const ArcRows relations = relations_among(graph, places, arcs, eye);
+    const Components components = strong_components(relations);
+    std::vector<CellId> cells;
+    cells.reserve(places.size());
+    for (const CellId place : places)
+        cells.push_back(graph.cell(place));
     ResolvedCycles result;
-    result.items.reserve(cells.size());
-    Resolver resolver(mesh, cells, graph, eye, result);
+    result.items.reserve(places.size());
+    Resolver resolver(graph.mesh(), std::move(cells), relations, eye, result);
     for (std::size_t k = 0; k < components.size(); ++k)
         resolver.resolve(components[k]);
     return result;

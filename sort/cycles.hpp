@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "sort/cell_graph.hpp"
 #include "sort/view_order.hpp"
 
 namespace cellproj {
@@ -30,13 +31,14 @@ struct ResolvedCycles {
     std::vector<CellPiece> pieces;
     std::size_t unordered = 0;    // parts ordered by depth
     std::size_t cycles = 0;       // components of more than one cell
+    std::size_t cyclic_cells = 0;  // cells in these
     std::size_t split_cells = 0;  // cells that became pieces
 };
 
-// Orders `cells` (any of the mesh's, each once), by the relations among them: faces that they share, by exact signs, and `arcs`;
-// arcs to other cells are passed over. Inverted cells count as what they cover. Flat cells pass on relations between their
-// neighbours and have none of their own. Where cells overlap there is no order: nothing fails, some cell comes first.
-ResolvedCycles resolve_cycles(const TetMesh& mesh, const Adjacency& adjacency, std::span<const CellId> cells,
-                              std::span<const OrderArc> arcs, const Eye& eye);
+// Orders the cells at `places`, by the relations among them: faces that they share, by exact signs, and `arcs` (between places too);
+// arcs to other places are passed over. Where cells overlap there is no order: nothing fails, some cell comes first. A place stands
+// once in `places`; the answer is in the mesh's own numbers.
+ResolvedCycles resolve_cycles(const CellGraph& graph, std::span<const CellId> places, std::span<const OrderArc> arcs,
+                              const Eye& eye);
 
 }  // namespace cellproj

@@ -8,7 +8,13 @@
 #include <cassert>
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
+#include "sort/boundary.hpp"
+#include "sort/boundary_overlaps.hpp"
+#include "sort/boundary_scan.hpp"
+#include "sort/cycles.hpp"
 #include "sort/mesh_facts.hpp"
 
 namespace cellproj {
@@ -52,10 +58,17 @@ VisibilitySorter::VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacen
     : graph_(mesh, adjacency), convex_(fills_convex_body(graph_)) {}
 
 ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::optional<OrderMethod> method,
-                                  const PixelGrid* /*pixels*/, std::span<const std::uint8_t> visible) {
+                                  const PixelGrid* pixels, std::span<const std::uint8_t> visible) {
     assert(visible.empty() || visible.size() == graph_.size());
     OrderReport found;
-    found.method = method.value_or(OrderMethod::mpvo);
+    found.method = method.value_or(convex_ ? OrderMethod::mpvo : OrderMethod::sxmpvo);
+    if (found.method == OrderMethod::sxmpvo && !pixels) found.method = OrderMethod::bsp;
+    if (found.method == OrderMethod::bsp || found.method == OrderMethod::sxmpvo ||
+        (found.method == OrderMethod::mpvo && convex_)) {
+        const ViewOrder exact = order_exactly(eye, found, pixels);
+        if (report) *report = found;
+        return exact;
+    }
     std::span<const CellId> places;
     if (found.method == OrderMethod::centroid) {
         find_centroid_keys(graph_, eye, visible, key_sort_.keys(graph_.size()));
@@ -68,14 +81,47 @@ ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::opti
     return in_callers_numbers(places);
 }
 
-// In a mesh that fills a convex body any topological order will do. Elsewhere, and in cycles, depth has to help.
+// Depth has to help where relations are missing, and in cycles.
 std::span<const CellId> VisibilitySorter::order_by_relations(const Eye& eye, OrderReport& report) {
-    if (convex_) {
-        const auto places = topological_.run(graph_, eye);
-        report.exact = places.size() == graph_.size();
-        if (report.exact) return places;
-    }
     return topological_.run_by_depth(graph_, eye, report.unordered);
+}
+
+// A mesh that fills a convex body has all its relations in its faces. Others get those across the outside as arcs.
+ViewOrder VisibilitySorter::order_exactly(const Eye& eye, OrderReport& report, const PixelGrid* pixels) {
+    std::vector<OrderArc> arcs;
+    bool overlapping = graph_.folded_faces() > 0;
+    if (report.method != OrderMethod::mpvo) {
+        if (places_.empty()) {
+            boundary_ = order_boundary(graph_.mesh(), graph_.adjacency());
+            places_.resize(graph_.size());
+            for (CellId place = 0; place < graph_.size(); ++place) places_[graph_.cell(place)] = place;
+        }
+        if (report.method == OrderMethod::sxmpvo) {
+            BoundaryScan scan = scan_boundary(graph_.mesh(), boundary_, *pixels);
+            arcs = std::move(scan.arcs);
+            overlapping = scan.crossed_rays > 0;
+        } else {
+            arcs = boundary_overlaps(graph_.mesh(), boundary_, eye);
+        }
+        for (OrderArc& arc : arcs) arc = {places_[arc.behind], places_[arc.front]};
+    }
+    const ViewOrder order = sort_and_resolve(eye, report, arcs);
+    report.exact = report.unordered == 0 && !overlapping;
+    return order;
+}
+
+// What the topological sort does not reach waits for a cycle, and comes after all that it reaches.
+ViewOrder VisibilitySorter::sort_and_resolve(const Eye& eye, OrderReport& report, std::span<const OrderArc> arcs) {
+    const auto places = topological_.run(graph_, eye, arcs);
+    in_callers_numbers(places);
+    if (places.size() == graph_.size()) return {items_, {}};
+    ResolvedCycles rest = resolve_cycles(graph_, topological_.stalled(), arcs, eye);
+    items_.insert(items_.end(), rest.items.begin(), rest.items.end());
+    pieces_ = std::move(rest.pieces);
+    report.unordered = rest.unordered;
+    report.cycles = rest.cycles;
+    report.split_cells = rest.split_cells;
+    return {items_, pieces_};
 }
 
 ViewOrder VisibilitySorter::in_callers_numbers(std::span<const CellId> places) {

@@ -9,6 +9,8 @@
 //   body, where no relations form a cycle. In others, cells that see each other across the outside have no relation: the farthest centroid
 //   of those that are free comes first, which is right almost everywhere.
 // - centroid: by the distance of centroids, never proven.
+// - bsp, sxmpvo: mpvo with the relations across the outside, for all rays (sort/boundary_overlaps.hpp) or for those of `pixels`
+//   (sort/boundary_scan.hpp); cells in cycles are cut (sort/cycles.hpp). Proven for cells that do not overlap; sxmpvo sees where they do.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +36,7 @@ public:
     VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency);
 
     // Cells from back to front. The spans stay valid until the next call or the end of the sorter. `method`: nothing for one that
-    // is exact for this mesh. `pixels`: what sxmpvo needs. `visible` (#T or empty): cells with 0 are not drawn; they may be left out.
+    // is exact for this mesh. `pixels`: what sxmpvo needs; without them it is bsp. `visible` (#T or empty): cells with 0 are not drawn; they may be left out.
     ViewOrder order(const Eye& eye, OrderReport* report = nullptr, std::optional<OrderMethod> method = {},
                     const PixelGrid* pixels = nullptr, std::span<const std::uint8_t> visible = {});
 
@@ -49,6 +51,8 @@ public:
 
 private:
     std::span<const CellId> order_by_relations(const Eye& eye, OrderReport& report);
+    ViewOrder order_exactly(const Eye& eye, OrderReport& report, const PixelGrid* pixels);
+    ViewOrder sort_and_resolve(const Eye& eye, OrderReport& report, std::span<const OrderArc> arcs);
     ViewOrder in_callers_numbers(std::span<const CellId> places);
 
     CellGraph graph_;
@@ -56,6 +60,9 @@ private:
     TopologicalSort topological_;
     KeySort key_sort_;
     std::vector<std::uint32_t> items_;
+    std::vector<CellPiece> pieces_;
+    std::vector<BoundaryFace> boundary_;  // order_boundary(), when first asked for
+    std::vector<CellId> places_;          // #T: the place of a cell, likewise
 };
 
 // One order of all cells for one eye.

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <map>
 #include <unordered_map>
 
 #include <oneapi/tbb/blocked_range.h>
@@ -47,6 +47,20 @@ Stretch clip(const std::array<glm::dvec3, 4>& p, const ViewRay& ray) {
 }
 
 }  // namespace
+
+Camera judging_camera(const Bounds& box, int i, std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    const double a = normal(random), b = normal(random), c = normal(random);
+    const glm::dvec3 from = i % 5 == 0 ? glm::dvec3(0, 0, 1) : glm::normalize(glm::dvec3(a, b, c));
+    const glm::dvec3 up = std::abs(from.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    Camera camera = frame_bounds(box, i % 2 ? Camera::Projection::perspective : Camera::Projection::parallel, from, up, 1.0);
+    if (i % 4 == 3) {
+        camera.eye = box.center() + 0.1 * box.diagonal() * from;
+        camera.center = camera.eye - box.diagonal() * from;
+        camera.fov_y_degrees = 90;
+    }
+    return camera;
+}
 
 PixelGrid pixel_grid(const Camera& camera, ImageSize size) {
     const ScreenTransform transform(camera, size);

@@ -14,6 +14,10 @@
 
 namespace cellproj::testing_support {
 
+// Eye i of those that see a box: parallel when i is even; every fourth perspective one stands inside the box and looks out at a wide
+// angle; every fifth eye looks along z, the others in random directions.
+Camera judging_camera(const Bounds& box, int i, std::mt19937_64& random);
+
 // The pixels of a camera's picture, as the sorter takes them.
 PixelGrid pixel_grid(const Camera& camera, ImageSize size);
 

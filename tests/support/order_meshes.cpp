@@ -185,7 +185,7 @@ TetMesh twisted_mesh(int n, int whirls, std::uint64_t seed) {
     TetMesh mesh = grid_mesh(n, 0.1, seed);
     for (int i = 0; i < whirls; ++i) {
         const glm::dvec3 center(inside(random), inside(random), inside(random));
-        const double radius = 4.5 / n;
+        const double radius = 8.0 / n;
         // The angle that just keeps all cells positive, from strong to weak.
         for (double angle = 9.0; angle > 0.1; angle *= 0.8) {
             TetMesh turned = mesh;

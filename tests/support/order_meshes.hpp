@@ -38,8 +38,8 @@ TetMesh spiral_stair(int steps);
 // cells stay positive. About one cell in twenty is in a cycle as seen along z.
 TetMesh twisted_mesh(int n, int whirls, std::uint64_t seed = 1);
 
-// grid_mesh(n, .2) with cells that have no volume or the wrong sign of it: `each` flat ones, needles, points and inverted ones, by
-// moving points, changing vertices or their order.
+// grid_mesh(n, .2) and `each` flat cells of both kinds (between two cells, on the side of the cube), needles, lines and points among its
+// cells, and as many of its cells with their vertices in the wrong order. Cells are shuffled.
 TetMesh damaged_mesh(int n, int each, std::uint64_t seed = 1);
 
 // Each point times `scale` plus `offset`.
