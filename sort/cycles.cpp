@@ -100,8 +100,11 @@ public:
 
     // Puts the cells of one component into the order.
     void resolve(std::span<const std::uint32_t> component) {
-        if (component.size() == 1) {
-            result_.items.push_back(cells_[component[0]]);
+        // Flat cells hide nothing: what they are in is no cycle.
+        const auto solid = component.size() == 1 ? 1 : std::count_if(component.begin(), component.end(), [&](std::uint32_t node) { return has_volume(node); });
+        if (solid <= 1) {
+            for (const std::uint32_t node : component)
+                result_.items.push_back(cells_[node]);
             return;
         }
         ++result_.cycles;
@@ -157,6 +160,11 @@ private:
                 groups[k].push_back(std::move(parts[i]));
         }
         return groups;
+    }
+
+    bool has_volume(std::uint32_t node) const {
+        const auto p = corners(mesh_, cells_[node]);
+        return orientation(p[0], p[1], p[2], p[3]) != 0;
     }
 
     PlaneSides sides_of(const Part& part, const CornerHeights& heights) const {
@@ -281,9 +289,10 @@ private:
             by_depth.emplace_back(-distance(eye_, at), i);
         }
         std::sort(by_depth.begin(), by_depth.end());
-        for (const auto& [depth, i] : by_depth)
+        for (const auto& [depth, i] : by_depth) {
             emit(parts[i]);
-        result_.unordered += parts.size();
+            result_.unordered += has_volume(parts[i].node) ? 1 : 0;
+        }
     }
 
     const TetMesh& mesh_;

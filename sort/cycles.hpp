@@ -30,7 +30,7 @@ struct ResolvedCycles {
     std::vector<std::uint32_t> items;  // from back to front: a cell, or #T + i for pieces[i]
     std::vector<CellPiece> pieces;
     std::size_t unordered = 0;    // parts ordered by depth
-    std::size_t cycles = 0;       // components of more than one cell
+    std::size_t cycles = 0;       // components of more than one cell with volume
     std::size_t cyclic_cells = 0;  // cells in these
     std::size_t split_cells = 0;  // cells that became pieces
 };
