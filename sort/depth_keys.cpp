@@ -47,7 +47,7 @@ std::size_t find_places(std::vector<Counts>& counts) {
 
 }  // namespace
 
-std::span<const std::uint32_t> KeySort::sort() {
+std::span<std::uint32_t> KeySort::sort() {
     std::vector<Counts> counts(parts);
     for_each_part(keys_.size(), [&](std::size_t part, std::size_t begin, std::size_t end) {
         counts[part].fill(0);

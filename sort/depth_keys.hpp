@@ -25,7 +25,7 @@ public:
         return keys_;
     }
     // The numbers of the elements whose key is not `no_key`, by ascending key; equal ones by number. The same for any number of threads.
-    std::span<const std::uint32_t> sort();
+    std::span<std::uint32_t> sort();
 
 private:
     struct Entry {

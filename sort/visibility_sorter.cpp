@@ -8,14 +8,13 @@
 #include <cassert>
 #include <functional>
 #include <limits>
-#include <utility>
-#include <vector>
 
-#include "sort/boundary.hpp"
-#include "sort/boundary_overlaps.hpp"
-#include "sort/boundary_scan.hpp"
-#include "sort/cycles.hpp"
+#include "sort/cell_graph.hpp"
+#include "sort/depth_keys.hpp"
+#include "sort/exact_order.hpp"
 #include "sort/mesh_facts.hpp"
+#include "sort/power_keys.hpp"
+#include "sort/topological_sort.hpp"
 
 namespace cellproj {
 
@@ -54,90 +53,101 @@ bool wrong_way_round(std::uint32_t a, std::uint32_t b, int beyond) {
 
 }  // namespace
 
+struct VisibilitySorter::State {
+    CellGraph graph;
+    bool convex;
+    TopologicalSort topological;
+    KeySort key_sort;
+    std::optional<bool> delaunay;   // once it was asked for
+    std::optional<PowerKeys> powers;  // likewise
+    ExactOrder exact;
+    std::vector<std::uint32_t> items;
+
+    bool is_delaunay();
+    std::span<const CellId> order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible);
+    std::span<const CellId> order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible, OrderReport& report);
+    std::span<const CellId> order_by_relations(const Eye& eye, OrderReport& report);
+    ViewOrder in_callers_numbers(std::span<const CellId> places);
+};
+
 VisibilitySorter::VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency)
-    : graph_(mesh, adjacency), convex_(fills_convex_body(graph_)) {}
+    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .exact = {}, .items = {}})) {
+    state_->convex = fills_convex_body(state_->graph);
+}
+
+VisibilitySorter::~VisibilitySorter() = default;
+VisibilitySorter::VisibilitySorter(VisibilitySorter&&) noexcept = default;
+VisibilitySorter& VisibilitySorter::operator=(VisibilitySorter&&) noexcept = default;
+
+bool VisibilitySorter::convex() const { return state_->convex; }
+const CellGraph& VisibilitySorter::graph() const { return state_->graph; }
+Adjacency VisibilitySorter::adjacency() const { return state_->graph.adjacency(); }
 
 ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::optional<OrderMethod> method,
                                   const PixelGrid* pixels, std::span<const std::uint8_t> visible) {
-    assert(visible.empty() || visible.size() == graph_.size());
+    assert(visible.empty() || visible.size() == state_->graph.size());
     OrderReport found;
-    found.method = method.value_or(convex_ ? OrderMethod::mpvo : OrderMethod::sxmpvo);
+    found.method = method.value_or(state_->is_delaunay() ? OrderMethod::power : state_->convex ? OrderMethod::mpvo : OrderMethod::sxmpvo);
     if (found.method == OrderMethod::sxmpvo && !pixels) found.method = OrderMethod::bsp;
     if (found.method == OrderMethod::bsp || found.method == OrderMethod::sxmpvo ||
-        (found.method == OrderMethod::mpvo && convex_)) {
-        const ViewOrder exact = order_exactly(eye, found, pixels);
+        (found.method == OrderMethod::mpvo && state_->convex)) {
+        const ViewOrder order = state_->exact.order(state_->graph, state_->topological, eye, pixels, found);
         if (report) *report = found;
-        return exact;
+        return order;
     }
-    std::span<const CellId> places;
-    if (found.method == OrderMethod::centroid) {
-        find_centroid_keys(graph_, eye, visible, key_sort_.keys(graph_.size()));
-        places = key_sort_.sort();
-    } else {
-        found.method = OrderMethod::mpvo;
-        places = order_by_relations(eye, found);
-    }
+    const auto places = found.method == OrderMethod::centroid ? state_->order_by_centroids(eye, visible)
+                        : found.method == OrderMethod::power  ? state_->order_by_powers(eye, visible, found)
+                                                              : state_->order_by_relations(eye, found);
     if (report) *report = found;
-    return in_callers_numbers(places);
+    return state_->in_callers_numbers(places);
 }
 
-// Depth has to help where relations are missing, and in cycles.
-std::span<const CellId> VisibilitySorter::order_by_relations(const Eye& eye, OrderReport& report) {
-    return topological_.run_by_depth(graph_, eye, report.unordered);
+bool VisibilitySorter::State::is_delaunay() {
+    if (!delaunay) delaunay = convex && graph.flat_cells() == 0 && locally_delaunay(graph);
+    return *delaunay;
 }
 
-// A mesh that fills a convex body has all its relations in its faces. Others get those across the outside as arcs.
-ViewOrder VisibilitySorter::order_exactly(const Eye& eye, OrderReport& report, const PixelGrid* pixels) {
-    std::vector<OrderArc> arcs;
-    bool overlapping = graph_.folded_faces() > 0;
-    if (report.method != OrderMethod::mpvo) {
-        if (places_.empty()) {
-            boundary_ = order_boundary(graph_.mesh(), graph_.adjacency());
-            places_.resize(graph_.size());
-            for (CellId place = 0; place < graph_.size(); ++place) places_[graph_.cell(place)] = place;
-        }
-        if (report.method == OrderMethod::sxmpvo) {
-            BoundaryScan scan = scan_boundary(graph_.mesh(), boundary_, *pixels);
-            arcs = std::move(scan.arcs);
-            overlapping = scan.crossed_rays > 0;
-        } else {
-            arcs = boundary_overlaps(graph_.mesh(), boundary_, eye);
-        }
-        for (OrderArc& arc : arcs) arc = {places_[arc.behind], places_[arc.front]};
+std::span<const CellId> VisibilitySorter::State::order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible) {
+    find_centroid_keys(graph, eye, visible, key_sort.keys(graph.size()));
+    return key_sort.sort();
+}
+
+std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible,
+                                                                 OrderReport& report) {
+    if (!powers) powers.emplace(graph);
+    powers->find(graph, eye, visible, key_sort.keys(graph.size()));
+    const auto places = key_sort.sort();
+    if (!is_delaunay()) return places;
+    report.exact = powers->settle(graph, eye, places);
+    return report.exact ? places : order_by_relations(eye, report);
+}
+
+// In a mesh that fills a convex body any topological order will do. Elsewhere, and in cycles, depth has to help.
+std::span<const CellId> VisibilitySorter::State::order_by_relations(const Eye& eye, OrderReport& report) {
+    report.method = OrderMethod::mpvo;
+    if (convex) {
+        const auto places = topological.run(graph, eye);
+        report.exact = places.size() == graph.size();
+        if (report.exact) return places;
     }
-    const ViewOrder order = sort_and_resolve(eye, report, arcs);
-    report.exact = report.unordered == 0 && !overlapping;
-    return order;
+    return topological.run_by_depth(graph, eye, report.unordered);
 }
 
-// What the topological sort does not reach waits for a cycle, and comes after all that it reaches.
-ViewOrder VisibilitySorter::sort_and_resolve(const Eye& eye, OrderReport& report, std::span<const OrderArc> arcs) {
-    const auto places = topological_.run(graph_, eye, arcs);
-    in_callers_numbers(places);
-    if (places.size() == graph_.size()) return {items_, {}};
-    ResolvedCycles rest = resolve_cycles(graph_, topological_.stalled(), arcs, eye);
-    items_.insert(items_.end(), rest.items.begin(), rest.items.end());
-    pieces_ = std::move(rest.pieces);
-    report.unordered = rest.unordered;
-    report.cycles = rest.cycles;
-    report.split_cells = rest.split_cells;
-    return {items_, pieces_};
-}
-
-ViewOrder VisibilitySorter::in_callers_numbers(std::span<const CellId> places) {
-    items_.resize(places.size());
+ViewOrder VisibilitySorter::State::in_callers_numbers(std::span<const CellId> places) {
+    items.resize(places.size());
     oneapi::tbb::parallel_for(Range(0, places.size(), cells_per_task), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) items_[i] = graph_.cell(places[i]);
+        for (std::size_t i = range.begin(); i != range.end(); ++i) items[i] = graph.cell(places[i]);
     });
-    return {items_, {}};
+    return {items, {}};
 }
 
 std::size_t VisibilitySorter::count_violations(const ViewOrder& order, const Eye& eye) const {
-    const auto position = positions(order, graph_.size());
-    return count_faces(graph_.size(), [&](CellId place, int face) {
-        const CellId other = graph_.neighbours(place)[static_cast<std::size_t>(face)];
-        if (other == graph_.nobody() || other < place) return false;
-        return wrong_way_round(position[graph_.cell(place)], position[graph_.cell(other)], graph_.beyond(eye, place, face));
+    const CellGraph& graph = state_->graph;
+    const auto position = positions(order, graph.size());
+    return count_faces(graph.size(), [&](CellId place, int face) {
+        const CellId other = graph.neighbours(place)[static_cast<std::size_t>(face)];
+        if (other == graph.nobody() || other < place) return false;
+        return wrong_way_round(position[graph.cell(place)], position[graph.cell(other)], graph.beyond(eye, place, face));
     });
 }
 

@@ -9,24 +9,22 @@
 //   body, where no relations form a cycle. In others, cells that see each other across the outside have no relation: the farthest centroid
 //   of those that are free comes first, which is right almost everywhere.
 // - centroid: by the distance of centroids, never proven.
-// - bsp, sxmpvo: mpvo with the relations across the outside, for all rays (sort/boundary_overlaps.hpp) or for those of `pixels`
-//   (sort/boundary_scan.hpp); cells in cycles are cut (sort/cycles.hpp). Proven for cells that do not overlap; sxmpvo sees where they do.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "mesh/predicates.hpp"
 #include "mesh/tet_mesh.hpp"
-#include "sort/cell_graph.hpp"
-#include "sort/depth_keys.hpp"
-#include "sort/topological_sort.hpp"
 #include "sort/view_order.hpp"
 
 namespace cellproj {
+
+class CellGraph;
 
 // Keeps what does not depend on the eye. The mesh must outlive the sorter and stay unchanged. Time: linear. Same order on every machine
 // and for any number of threads; one call at a time.
@@ -34,35 +32,28 @@ class VisibilitySorter {
 public:
     explicit VisibilitySorter(const TetMesh& mesh) : VisibilitySorter(mesh, build_adjacency(mesh)) {}
     VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency);
+    ~VisibilitySorter();
+    VisibilitySorter(VisibilitySorter&&) noexcept;
+    VisibilitySorter& operator=(VisibilitySorter&&) noexcept;
 
     // Cells from back to front. The spans stay valid until the next call or the end of the sorter. `method`: nothing for one that
-    // is exact for this mesh. `pixels`: what sxmpvo needs; without them it is bsp. `visible` (#T or empty): cells with 0 are not drawn; they may be left out.
+    // is exact for this mesh. `pixels`: what sxmpvo needs. `visible` (#T or empty): cells with 0 are not drawn; they may be left out.
     ViewOrder order(const Eye& eye, OrderReport* report = nullptr, std::optional<OrderMethod> method = {},
                     const PixelGrid* pixels = nullptr, std::span<const std::uint8_t> visible = {});
 
     // Whether the cells fill a convex body (sort/mesh_facts.hpp).
-    bool convex() const { return convex_; }
-    const CellGraph& graph() const { return graph_; }
-    Adjacency adjacency() const { return graph_.adjacency(); }
+    bool convex() const;
+    const CellGraph& graph() const;
+    // In the caller's numbers, without faces that have both cells on one side.
+    Adjacency adjacency() const;
 
     // How many pairs of face neighbours stand the wrong way round, by exact signs. Pairs with a cell that is split or left out do not
     // count.
     std::size_t count_violations(const ViewOrder& order, const Eye& eye) const;
 
 private:
-    std::span<const CellId> order_by_relations(const Eye& eye, OrderReport& report);
-    ViewOrder order_exactly(const Eye& eye, OrderReport& report, const PixelGrid* pixels);
-    ViewOrder sort_and_resolve(const Eye& eye, OrderReport& report, std::span<const OrderArc> arcs);
-    ViewOrder in_callers_numbers(std::span<const CellId> places);
-
-    CellGraph graph_;
-    bool convex_;
-    TopologicalSort topological_;
-    KeySort key_sort_;
-    std::vector<std::uint32_t> items_;
-    std::vector<CellPiece> pieces_;
-    std::vector<BoundaryFace> boundary_;  // order_boundary(), when first asked for
-    std::vector<CellId> places_;          // #T: the place of a cell, likewise
+    struct State;  // sort/visibility_sorter.cpp: no user needs to know the layout
+    std::unique_ptr<State> state_;
 };
 
 // One order of all cells for one eye.

@@ -62,18 +62,6 @@ Camera judging_camera(const Bounds& box, int i, std::mt19937_64& random) {
     return camera;
 }
 
-PixelGrid pixel_grid(const Camera& camera, ImageSize size) {
-    const ScreenTransform transform(camera, size);
-    const double w = size.width, h = size.height;
-    const glm::dvec3 forward = transform.ray({w / 2, h / 2}).direction;
-    // Perspective: on the plane at depth 1.
-    const auto at = [&](double x, double y) {
-        const auto ray = transform.ray({x, y});
-        return transform.perspective() ? ray.origin + ray.direction / glm::dot(ray.direction, forward) : ray.origin;
-    };
-    return {camera.viewpoint(), at(0, 0), (at(w, 0) - at(0, 0)) / w, (at(0, h) - at(0, 0)) / h, size.width, size.height};
-}
-
 std::vector<ViewRay> random_pixel_rays(const RayIndex& index, const PixelGrid& grid, int count, std::mt19937_64& random) {
     std::uniform_int_distribution<int> column(0, grid.width - 1), row(0, grid.height - 1);
     std::vector<ViewRay> rays;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "project/camera.hpp"
+#include "render/order_check.hpp"
 #include "render/ray_index.hpp"
 #include "sort/view_order.hpp"
 
@@ -17,9 +18,6 @@ namespace cellproj::testing_support {
 // Eye i of those that see a box: parallel when i is even; every fourth perspective one stands inside the box and looks out at a wide
 // angle; every fifth eye looks along z, the others in random directions.
 Camera judging_camera(const Bounds& box, int i, std::mt19937_64& random);
-
-// The pixels of a camera's picture, as the sorter takes them.
-PixelGrid pixel_grid(const Camera& camera, ImageSize size);
 
 // Rays through `count` pixels at random, with repeats.
 std::vector<ViewRay> random_pixel_rays(const RayIndex& index, const PixelGrid& grid, int count, std::mt19937_64& random);
