@@ -135,10 +135,15 @@ bool is_behind(const Eye& eye, const Triangle& f, const Triangle& g) {
             if (const int s = orientation(f[0], f[1], f[2], g[k])) return s < 0;
         }
     }
-    for (std::size_t i = 0; eye.at_infinity && i < 3; ++i) {  // in perspective planes also meet behind the eye
+    for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t i1 = (i + 1) % 3, k1 = (k + 1) % 3;
             if (of_f[i][k] * of_f[i][k1] >= 0 || of_g[k][i] * of_g[k][i1] >= 0) continue;
+            // The planes through the eye and the two edges meet in a line, of which one may hold a point before the eye and the
+            // other one behind it. With p, q and r, s relative to the eye: (p×q)×(r×s) = det(p,r,s)·q − det(q,r,s)·p
+            // = det(p,q,s)·r − det(p,q,r)·s, so the sign of det(p,r,s) says on which end of the line p q crosses, that of
+            // det(p,q,s) says it for r s.
+            if (!eye.at_infinity && of_g[k][i] != of_f[i][k1]) continue;
             // Edge k of g passes edge i of f on the side of the plane (f[i], f[i1], g[k]) that g[k1] is on.
             if (const int s = orientation(f[i], f[i1], g[k], g[k1])) return of_f[i][k] * s > 0;
         }

@@ -11,6 +11,7 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_reduce.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 
@@ -125,12 +126,23 @@ std::size_t wrong_rays(const TetMesh& mesh, const RayIndex& index, const ViewOrd
         }
         return false;
     };
+    const auto is_surely_wrong = [&](const ViewRay& ray) {
+        if (!is_wrong(ray)) return false;
+        const glm::dvec3 d = glm::abs(ray.direction);
+        const glm::dvec3 least = d.x <= d.y && d.x <= d.z ? glm::dvec3(1, 0, 0) : d.y <= d.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+        const glm::dvec3 x = shortest * glm::normalize(glm::cross(ray.direction, least)), y = glm::cross(ray.direction, x);
+        // Askew to axes, which faces like to follow.
+        for (const glm::dvec3& step : {x + 0.37 * y, y - 0.37 * x, -x - 0.37 * y, 0.37 * x - y}) {
+            if (!is_wrong({ray.origin + step, ray.direction, ray.start})) return false;
+        }
+        return true;
+    };
     using Range = oneapi::tbb::blocked_range<std::size_t>;
     return oneapi::tbb::parallel_reduce(
         Range(0, rays.size(), 64), std::size_t{0},
         [&](const Range& range, std::size_t wrong) {
             for (std::size_t i = range.begin(); i != range.end(); ++i)
-                wrong += is_wrong(rays[i]) ? 1 : 0;
+                wrong += is_surely_wrong(rays[i]) ? 1 : 0;
             return wrong;
         },
         std::plus<>());

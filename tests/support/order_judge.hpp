@@ -27,7 +27,8 @@ std::vector<ViewRay> random_rays(const RayIndex& index, const PixelGrid& grid, i
 
 // How many rays meet two cells or pieces in another order than the given one, or miss a part of a cell that was split: what is
 // seen first along a ray must come last. Stretches shorter than 1e-9 of the mesh's size do not count: rounding of the judge's rays
-// and of the corners of pieces.
+// and of the corners of pieces. A ray that runs in a face passes now on one side of it, now on the other by rounding: it counts only
+// when the four rays beside it, 1e-9 of the mesh's size away, are wrong as well.
 std::size_t wrong_rays(const TetMesh& mesh, const RayIndex& index, const ViewOrder& order, std::span<const ViewRay> rays);
 
 // Whether each cell is there exactly once, as a whole or as pieces that fill it to 1e-9 of its volume.
