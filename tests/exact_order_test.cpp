@@ -16,6 +16,8 @@
 
 #include "mesh/read.hpp"
 #include "mesh/tetrahedralize.hpp"
+#include "render/reference.hpp"
+#include "render/renderer.hpp"
 #include "sort/boundary.hpp"
 #include "sort/boundary_overlaps.hpp"
 #include "sort/boundary_scan.hpp"
@@ -26,6 +28,7 @@
 #include "tests/support/meshes.hpp"
 #include "tests/support/order_judge.hpp"
 #include "tests/support/order_meshes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace cellproj {
 namespace {
@@ -180,6 +183,50 @@ TEST(ExactOrder, WhatCannotBePartedIsOrderedByDepthAndCounted) {
     const ResolvedCycles resolved = resolve_cycles(graph, places, arcs, Eye::towards({0, 0, 1}));
     EXPECT_EQ(resolved.unordered, 2U);
     EXPECT_TRUE(is_complete(mesh, {resolved.items, resolved.pieces}));
+}
+
+// ---- Pictures ----
+
+// How many pixels are off the judge's picture by more than 1/100 in a channel, where the judge is sure (not beside an edge).
+std::size_t wrong_pixels(const Scene& scene, const Camera& camera, std::optional<OrderMethod> method) {
+    constexpr ImageSize size{48, 48};
+    Quality quality;
+    quality.order = method;
+    static const auto renderer = make_renderer(Backend::gl_osmesa);
+    const Image image = renderer->render(scene, camera, size, quality);
+    std::vector<PixelId> pixels;
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x)
+            pixels.push_back({x, y});
+    }
+    std::size_t wrong = 0;
+    for (const PixelTruth& truth : Reference(scene).pixels(camera, size, pixels, 0.01)) {
+        const glm::dvec4 low(truth.low.color, truth.low.opacity), high(truth.high.color, truth.high.opacity);
+        const glm::dvec4 seen(image.at(truth.pixel.x, truth.pixel.y));
+        for (int k = 0; k < 4; ++k) {
+            if (seen[k] >= low[k] - 0.01 && seen[k] <= high[k] + 0.01) continue;
+            ++wrong;
+            break;
+        }
+    }
+    return wrong;
+}
+
+// Pieces are drawn with the light of their cells: dense media of many colours, in which any wrong order shows.
+TEST(ExactOrder, PicturesOfCyclesAreRight) {
+    const TransferFunction dense{OpticalModel::density, {{0, {1, 0, 0}}, {0.5, {0, 1, 0}}, {1, {0, 0, 1}}}, {{0, 40}}};
+    for (const TetMesh& mesh : {overlapping_sticks(), twisted_mesh(8, 20)}) {
+        std::mt19937_64 random(5);
+        ScalarField field{"f", FieldLocation::cells, {}};
+        for (std::size_t c = 0; c < mesh.tets.size(); ++c)
+            field.values.push_back(mesh.tets.size() == 3 ? 0.5 * static_cast<double>(c) : std::uniform_real_distribution<double>()(random));
+        const Scene scene = scene_of(mesh, field, dense);
+        for (const int eye : {0, 5}) {  // along z
+            const Camera camera = judging_camera(bounds(mesh.points), eye, random);
+            EXPECT_EQ(wrong_pixels(scene, camera, {}), 0U);
+            EXPECT_GT(wrong_pixels(scene, camera, OrderMethod::centroid), 0U);
+        }
+    }
 }
 
 // ---- Robustness ----
