@@ -28,6 +28,10 @@ constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
 
 double size_of(const glm::dvec3& v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
+// Pieces in contact whose coordinates were rounded, to float32 as a rule, may reach into each other by this share of their faces'
+// edges (mesh/face_contacts.hpp calls them in contact up to as much): there, too, leaving comes before entering.
+constexpr double contact = 1e-6;
+
 int sign(double x) { return (x > 0) - (x < 0); }
 
 // The ray of a pixel: origin + t·direction, t > 0 in perspective.
@@ -285,15 +289,30 @@ private:
             for (std::size_t l = k; l > 0 && is_farther(list[l], list[l - 1], i, j); --l)
                 std::swap(list[l], list[l - 1]);
         }
-        bool crossed = false;
-        for (std::size_t k = 0; k + 1 < list.size(); ++k) {
-            const SeenFace &f = faces_[list[k].face], &g = faces_[list[k + 1].face];
-            crossed = crossed || f.is_entry == g.is_entry;
-            if (!f.is_entry && g.is_entry && f.cell != g.cell) add({f.cell, g.cell});
+        bool crossed = false, inside = false;  // a ray comes from infinity
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            if (inside && k + 1 < list.size() && is_entry(list[k]) && !is_entry(list[k + 1]) &&
+                distance(list[k], list[k + 1], i, j) <= contact * std::min(longest_edge(list[k]), longest_edge(list[k + 1])))
+                std::swap(list[k], list[k + 1]);
+            crossed = crossed || inside == is_entry(list[k]);
+            inside = is_entry(list[k]);
+            if (k > 0 && inside && !is_entry(list[k - 1]) && cell(list[k - 1]) != cell(list[k])) add({cell(list[k - 1]), cell(list[k])});
         }
-        // From infinity a ray enters first.
-        crossed = crossed || (!list.empty() && !faces_[list[0].face].is_entry);
         crossed_rays += crossed ? 1 : 0;
+    }
+
+    bool is_entry(const Fragment& fragment) const { return faces_[fragment.face].is_entry; }
+    CellId cell(const Fragment& fragment) const { return faces_[fragment.face].cell; }
+
+    // Between two fragments of a pixel [mesh units].
+    double distance(const Fragment& a, const Fragment& b, int i, int j) const {
+        const double difference = rays_.parallel() ? a.nearness - b.nearness : 1 / a.nearness - 1 / b.nearness;
+        return std::abs(difference) * glm::length(rays_.at(i, j).direction);
+    }
+
+    double longest_edge(const Fragment& fragment) const {
+        const auto p = places(mesh_, faces_[fragment.face]);
+        return std::max({glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
     }
 
     // Neighbouring pixels see much the same.

@@ -10,7 +10,8 @@
 // Robust: which pixel centres a face covers and which of two faces is nearer are decided in float64 where its error bound allows,
 // else exactly. A ray through a vertex, an edge or in a face is decided as if moved by (ε, ε²) pixels, the same for all faces, so
 // that it enters and leaves in turn (Edelsbrunner and Mücke, ACM TOG 9(1), 1990). Where two faces coincide, as do pieces in contact
-// whose points were never merged, leaving comes before entering.
+// whose points were never merged, leaving comes before entering; also where they reach into each other by rounding, up to a millionth
+// of their edges.
 #pragma once
 
 #include <cstddef>

@@ -156,6 +156,36 @@ TEST(ExactOrder, PiecesInContact) {
     expect_exact(mesh, 8);
 }
 
+// The same with coordinates rounded to float32 and turned, so that the pieces reach into each other by 1e-8 here and there.
+TEST(ExactOrder, PiecesInContactUpToRounding) {
+    TetMesh mesh = grid_mesh(4, 0.0);
+    for (auto& p : mesh.points) {
+        const auto turned = [](const glm::dvec3& q) { return glm::dvec3(0.8 * q.x - 0.6 * q.y, 0.6 * q.x + 0.8 * q.y, q.z / 3); };
+        p = turned(p);
+    }
+    const auto cells = mesh.tets;
+    const std::size_t count = mesh.points.size();
+    for (std::size_t i = 0; i < count; ++i)
+        mesh.points.push_back(mesh.points[i] + glm::dvec3(0.8 - 0.6 * 0.25 - 0.8e-8, 0.6 + 0.8 * 0.25 - 0.6e-8, 0));
+    for (auto tet : cells) {
+        for (auto& v : tet)
+            v += static_cast<VertexId>(count);
+        mesh.tets.push_back(tet);
+    }
+    for (auto& p : mesh.points)
+        p = glm::dvec3(glm::vec3(p));
+    VisibilitySorter sorter(mesh);
+    const RayIndex index(mesh);
+    std::mt19937_64 random(7);
+    for (int i = 0; i < 8; ++i) {
+        const PixelGrid grid = pixel_grid(judging_camera(bounds(mesh.points), i, random), picture);
+        OrderReport report;
+        const ViewOrder order = sorter.order(grid.eye, &report, OrderMethod::sxmpvo, &grid);
+        EXPECT_TRUE(report.exact) << "eye " << i;
+        EXPECT_EQ(wrong_rays(mesh, index, order, random_pixel_rays(index, grid, 1024, random)), 0U) << "eye " << i;
+    }
+}
+
 // Cells that overlap have no order: sxmpvo sees it and says so.
 TEST(ExactOrder, OverlapIsReported) {
     TetMesh mesh = unit_tet();
