@@ -176,8 +176,9 @@ private:
         return heights_over(plane, corners(mesh_, cells_[part.node]));
     }
 
-    // Of planes that leave something on both sides, one that cuts few parts and halves the rest. 0 cuts of two cells are enough
-    // in a pair; in a long cycle the balance keeps the tree low. Nothing when no plane parts them: the cells overlap.
+    // Of planes that leave something on both sides, one that cuts few parts and halves the rest: in a long cycle the balance keeps
+    // the tree low. Candidates are spread over the parts; with as many as there are faces each is tried. Nothing when no plane
+    // parts them: the cells overlap.
     struct Choice {
         Plane plane;
         double cost;
@@ -187,8 +188,7 @@ private:
         const std::size_t faces = 4 * parts.size(), tried = std::min(faces, candidates);
         const std::size_t step = parts.size() / parts_weighed + 1;
         for (std::size_t k = 0; k < tried; ++k) {
-            const std::size_t i = faces * k / tried;
-            const Plane plane = face_plane(mesh_, cells_[parts[i / 4].node], static_cast<int>(i % 4));
+            const Plane plane = face_plane(mesh_, cells_[parts[parts.size() * k / tried].node], static_cast<int>(k % 4));
             std::size_t below = 0, above = 0, both = 0;
             for (std::size_t p = 0; p < parts.size(); p += step) {
                 const PlaneSides side = sides_of(parts[p], part_heights(parts[p], plane));

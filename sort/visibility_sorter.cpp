@@ -188,8 +188,28 @@ std::size_t VisibilitySorter::count_violations(const ViewOrder& order, const Eye
 
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report) {
     VisibilitySorter sorter(mesh);
-    const ViewOrder order = sorter.order(eye, report);
-    return {order.items.begin(), order.items.end()};
+    OrderReport found;
+    const ViewOrder order = sorter.order(eye, &found);
+    std::vector<CellId> cells;
+    cells.reserve(mesh.tets.size());
+    std::vector<bool> is_there(order.pieces.empty() ? 0 : mesh.tets.size());
+    for (const std::uint32_t item : order.items) {
+        if (item < mesh.tets.size()) {
+            cells.push_back(item);
+            continue;
+        }
+        const CellId cell = order.pieces[item - mesh.tets.size()].cell;
+        if (is_there[cell]) continue;
+        is_there[cell] = true;
+        cells.push_back(cell);
+    }
+    if (!order.pieces.empty()) {
+        found.exact = false;
+        found.unordered += found.split_cells;
+        found.split_cells = 0;
+    }
+    if (report) *report = found;
+    return cells;
 }
 
 std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye) {

@@ -58,7 +58,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// One order of all cells for one eye.
+// One order of all cells for one eye, as wholes: a cell that had to be split comes where its farthest piece would, and is counted as
+// unordered.
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report = nullptr);
 
 // The same count for any adjacency, by the exact predicate alone: every cell positively oriented.
