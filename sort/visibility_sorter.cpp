@@ -157,7 +157,7 @@ std::span<const CellId> VisibilitySorter::State::order_by_relations(const Eye& e
 }
 
 std::span<const CellId> VisibilitySorter::State::order_of_convex(const Eye& eye) {
-    return last_eye && close_to_last(eye) ? topological.run_again(graph, eye) : topological.run(graph, eye);
+    return last_eye && topological.can_run_again(graph) && close_to_last(eye) ? topological.run_again(graph, eye) : topological.run(graph, eye);
 }
 
 // Within a few degrees around the mesh: beyond 10 the last order is no help (sort/README.md).
