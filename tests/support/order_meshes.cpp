@@ -182,9 +182,20 @@ TetMesh spiral_stair(int steps) {
 TetMesh twisted_mesh(int n, int whirls, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> inside(0.15, 0.85);
-    TetMesh mesh = grid_mesh(n, 0.1, seed);
+    std::uniform_real_distribution<double> jitter(-0.1 / n, 0.1 / n);
+    // One number after the other: the order of arguments is the compiler's.
+    const auto triple = [&](auto& distribution) {
+        const double x = distribution(random), y = distribution(random), z = distribution(random);
+        return glm::dvec3(x, y, z);
+    };
+    TetMesh mesh = grid_mesh(n);
+    for (auto& p : mesh.points) {
+        const glm::dvec3 step = triple(jitter);
+        const auto inner = [](double x) { return x > 0 && x < 1; };
+        if (inner(p.x) && inner(p.y) && inner(p.z)) p += step;
+    }
     for (int i = 0; i < whirls; ++i) {
-        const glm::dvec3 center(inside(random), inside(random), inside(random));
+        const glm::dvec3 center = triple(inside);
         const double radius = 8.0 / n;
         // The angle that just keeps all cells positive, from strong to weak.
         for (double angle = 9.0; angle > 0.1; angle *= 0.8) {
