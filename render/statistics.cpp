@@ -35,6 +35,7 @@ Json picture_json(const Statistics& picture) {
               {"culled", counts.culled},
               {"drawn", counts.drawn},
               {"triangles", counts.triangles},
+              {"fragments", counts.fragments},
               {"unordered", counts.unordered},
               {"order_violations", counts.order_violations}}},
             {"method", picture.method},

@@ -20,7 +20,7 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
     run.peak_memory_bytes = 123456789012;
     Statistics picture;
     picture.ms = {.plan = 1, .sort = 2, .project = 3, .draw = 4, .read_back = 5, .total = 6, .write = 7};
-    picture.counts = {.cells = 11, .culled = 12, .drawn = 13, .triangles = 14, .unordered = 15, .order_violations = 16};
+    picture.counts = {.cells = 11, .culled = 12, .drawn = 13, .triangles = 14, .fragments = 17, .unordered = 15, .order_violations = 16};
     picture.method = "preint3d:64";
     picture.target = "rgba16f";
     picture.table_bytes = 4194304;
@@ -34,7 +34,7 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
         "once": {"ms": {"read": 1.5, "tetrahedralize": 2.5, "prepare": 3.5}},
         "pictures": [{
             "ms": {"plan": 1.0, "sort": 2.0, "project": 3.0, "draw": 4.0, "read_back": 5.0, "total": 6.0, "write": 7.0},
-            "counts": {"cells": 11, "culled": 12, "drawn": 13, "triangles": 14, "unordered": 15, "order_violations": 16},
+            "counts": {"cells": 11, "culled": 12, "drawn": 13, "triangles": 14, "fragments": 17, "unordered": 15, "order_violations": 16},
             "method": "preint3d:64", "target": "rgba16f", "table_bytes": 4194304,
             "backend": "gl_osmesa", "backend_version": "4.5 (Core Profile)",
             "order": "mpvo", "error": 0.25}],
@@ -64,6 +64,7 @@ TEST(Statistics, KeysStandInTheOrderOfTheDesign) {
                             "culled",
                             "drawn",
                             "triangles",
+                            "fragments",
                             "unordered",
                             "order_violations",
                             "method",

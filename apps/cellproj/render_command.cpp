@@ -24,6 +24,8 @@ struct RenderOptions {
     std::filesystem::path output, stats;
     std::string method = to_string(Method{}), target = to_string(Quality{}.target);
     std::vector<double> background{1, 1, 1};
+    std::string backend = "auto";
+    int threads = 0;
     double orbit_degrees = 0;
     int frames = 1, bits = 8;
 };
@@ -42,6 +44,13 @@ std::vector<Camera> cameras_of_pictures(const RenderOptions& options, const Inpu
         turned.push_back(orbit(cameras.front(), options.orbit_degrees * i / options.frames));
     }
     return turned;
+}
+
+// Without a GPU the native backend is the faster one by far; what it does not draw, OpenGL does.
+Backend choose_backend(const RenderOptions& options, const Quality& quality) {
+    if (options.backend == "gl") return Backend::gl_osmesa;
+    if (options.backend == "cpu") return Backend::cpu;
+    return draws(Backend::cpu, quality) ? Backend::cpu : Backend::gl_osmesa;
 }
 
 // picture.png → picture_007.png when there are several.
@@ -80,8 +89,10 @@ void warn(const Image& image, const Statistics& statistics, const std::filesyste
 }
 
 void print_line(const std::filesystem::path& file, const Statistics& s) {
-    std::printf("%s: %zu of %zu cells, %zu triangles, %.0f ms (sort %.0f, project %.0f, draw %.0f)\n", file.c_str(),
-                s.counts.drawn, s.counts.cells, s.counts.triangles, s.ms.total, s.ms.sort, s.ms.project, s.ms.draw);
+    const bool by_triangles = s.counts.triangles > 0;
+    std::printf("%s: %zu of %zu cells, %zu %s, %.0f ms (sort %.0f, project %.0f, draw %.0f) by %s\n", file.c_str(), s.counts.drawn,
+                s.counts.cells, by_triangles ? s.counts.triangles : s.counts.fragments, by_triangles ? "triangles" : "fragments",
+                s.ms.total, s.ms.sort, s.ms.project, s.ms.draw, s.backend.c_str());
 }
 
 // The median over the pictures, without the first one, in which the driver compiles its shaders and tables are made.
@@ -111,7 +122,7 @@ void render_pictures(const RenderOptions& options) {
     RunStatistics run;
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
-    const auto renderer = make_renderer(Backend::gl_osmesa);
+    const auto renderer = make_renderer(choose_backend(options, quality), {.threads = options.threads});
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
@@ -161,6 +172,11 @@ void add_render_command(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--target", options->target, "What cells are blended in: rgba8, rgba16, rgba16f or rgba32f")
         ->capture_default_str();
+    command->add_option("--backend", options->backend,
+                        "What draws: cpu (native), gl (OpenGL by OSMesa), or auto: cpu, and gl for methods and targets that only it has")
+        ->check(CLI::IsMember({"auto", "cpu", "gl"}))->capture_default_str();
+    command->add_option("--threads", options->threads, "Threads of the cpu backend; 0: all that the process may use")
+        ->check(CLI::Range(0, 1024))->capture_default_str();
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
     command->callback([options] { render_pictures(*options); });
 }
