@@ -40,16 +40,34 @@ HWY_INLINE V exp_of_minus(D d, V x) {
     return hn::BitCast(d, hn::Add(hn::BitCast(di, p), hn::ShiftLeft<23>(k)));
 }
 
-// (1 − e^(−D))/D; the series below 1/16 (next term D⁴/120 < 2e-7), where the difference would lose digits.
+// Depths up to here are shallow: short series serve, and differences would lose digits.
+inline constexpr float shallow_depth = 0.125F;
+
+// e^(−x) for x ≤ shallow_depth: the next term is x⁵/120 < 3e-7.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V mean_transmittance(D d, V depth) {
-    V series = hn::Set(d, 1.0F / 24);
+HWY_INLINE V exp_of_minus_shallow(D d, V x) {
+    V series = hn::NegMulAdd(hn::Set(d, 1.0F / 24), x, hn::Set(d, 1.0F / 6));
+    series = hn::NegMulAdd(series, x, hn::Set(d, 0.5F));
+    series = hn::NegMulAdd(series, x, hn::Set(d, 1.0F));
+    return hn::NegMulAdd(series, x, hn::Set(d, 1.0F));
+}
+
+// (1 − e^(−D))/D for D ≤ shallow_depth: the next term is D⁵/720 < 5e-8.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V mean_transmittance_shallow(D d, V depth) {
+    V series = hn::NegMulAdd(hn::Set(d, 1.0F / 120), depth, hn::Set(d, 1.0F / 24));
     series = hn::NegMulAdd(series, depth, hn::Set(d, 1.0F / 6));
     series = hn::NegMulAdd(series, depth, hn::Set(d, 0.5F));
-    series = hn::NegMulAdd(series, depth, hn::Set(d, 1.0F));
-    const auto shallow = hn::Lt(depth, hn::Set(d, 0.0625F));
+    return hn::NegMulAdd(series, depth, hn::Set(d, 1.0F));
+}
+
+// (1 − e^(−D))/D
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V mean_transmittance(D d, V depth) {
+    const V series = mean_transmittance_shallow(d, depth);
+    const auto shallow = hn::Le(depth, hn::Set(d, shallow_depth));
     if (hn::AllTrue(d, shallow)) return series;
-    const V safe = hn::Max(depth, hn::Set(d, 0.0625F));
+    const V safe = hn::Max(depth, hn::Set(d, shallow_depth));
     const V whole = hn::Div(hn::Sub(hn::Set(d, 1.0F), exp_of_minus(d, safe)), safe);
     return hn::IfThenElse(shallow, series, whole);
 }
@@ -203,8 +221,8 @@ private:
         const V r = hn::IfThenElseZero(absorbs, hn::Div(hn::Sub(tau1, tau0), hn::IfThenElse(absorbs, tau, one)));
         Weights w = weights_of({length, depth, r});
         if (table_.density) {
-            const V before = exp_of_minus(d_, depth_);
-            w.front = hn::Max(zero, hn::Sub(hn::Mul(before, opacity_of_depth(d_, depth)), w.back));
+            const V seen = hn::Mul(exp_of_minus(d_, depth_), opacity_of_depth(d_, depth));
+            w.front = hn::Max(zero, hn::Sub(seen, w.back));
         }
         // Colours at both ends of the part are mixed from those at both ends of the piece.
         const V at_end = hn::MulAdd(w.front, t0, hn::Mul(w.back, t1));
@@ -264,9 +282,66 @@ private:
     V depth_;  // so far
 };
 
+// The last piece that begins at or below s.
+HWY_INLINE std::int32_t piece_of(const PieceArrays& table, float s) {
+    const auto bin = static_cast<std::size_t>(s * table.bin_count);
+    std::int32_t first = table.first[bin], last = table.last[bin];
+    while (first < last) {
+        const std::int32_t middle = (first + last + 1) / 2;
+        if (s < table.begin[static_cast<std::size_t>(middle)]) {
+            last = middle - 1;
+        } else {
+            first = middle;
+        }
+    }
+    return first;
+}
+
+// What Walk gives, for segments inside one piece, if none is deeper than two_point_depth; else only `depth` is right. Cells are small
+// and transfer functions have few pieces: this is most of the work, and nothing but arithmetic.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LightOf<V> light_in_piece(D d, const PieceArrays& table, std::int32_t piece, V s_f, V s_b, V length, V& depth) {
+    const auto i = static_cast<std::size_t>(piece);
+    const V one = hn::Set(d, 1.0F), zero = hn::Zero(d), half = hn::Set(d, 0.5F);
+    const V begin = hn::Set(d, table.begin[i]), per_width = hn::Set(d, table.inverse_width[i]);
+    const V t_f = hn::Mul(hn::Sub(s_f, begin), per_width), t_b = hn::Mul(hn::Sub(s_b, begin), per_width);
+    const float tau_0 = table.extinction[0][i], tau_1 = table.extinction[1][i];
+    const auto mixed = [&](float a, float b, V t) HWY_ATTR { return hn::MulAdd(hn::Set(d, b), t, hn::Mul(hn::Set(d, a), hn::Sub(one, t))); };
+    const V tau_f = mixed(tau_0, tau_1, t_f), tau_b = mixed(tau_0, tau_1, t_b);
+    depth = hn::Mul(hn::Mul(length, half), hn::Add(tau_f, tau_b));
+    const V mean_transmitted = mean_transmittance_shallow(d, depth);
+    const V opacity = hn::Mul(depth, mean_transmitted);
+
+    // D(t) = l·(τ_f·t + (τ_b − τ_f)·t²/2); two Gauss points
+    const V bend = hn::Mul(half, hn::Sub(tau_b, tau_f));
+    V back = zero, front = zero;
+    for (const float position : {0.21132487F, 0.78867513F}) {
+        const V t = hn::Set(d, position);
+        const V behind = hn::Mul(hn::Mul(length, t), hn::MulAdd(bend, t, tau_f));
+        const V transmitted = hn::Mul(hn::Mul(half, length), exp_of_minus_shallow(d, behind));
+        const V light = table.density ? hn::Mul(transmitted, hn::MulAdd(hn::Add(bend, bend), t, tau_f)) : transmitted;
+        back = hn::MulAdd(light, t, back);
+        front = hn::MulAdd(light, hn::Sub(one, t), front);
+    }
+    if (table.density) front = hn::Max(zero, hn::Sub(opacity, back));
+    const V at_end = hn::MulAdd(front, t_f, hn::Mul(back, t_b));
+    const V at_begin = hn::Sub(hn::Add(front, back), at_end);
+    const auto color = [&](std::size_t channel) HWY_ATTR {
+        return hn::MulAdd(at_begin, hn::Set(d, table.color[0][channel][i]), hn::Mul(at_end, hn::Set(d, table.color[1][channel][i])));
+    };
+    return {color(0), color(1), color(2), opacity};
+}
+
 // The light of segments: scalars 0..1, lengths ≥ 0 in scene units.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE LightOf<V> light_of_segments(D d, const PieceArrays& table, V s_f, V s_b, V length) {
+    const float low = hn::GetLane(hn::MinOfLanes(d, hn::Min(s_f, s_b))), high = hn::GetLane(hn::MaxOfLanes(d, hn::Max(s_f, s_b)));
+    const std::int32_t piece = piece_of(table, low);
+    if (high < table.end[static_cast<std::size_t>(piece)]) {
+        V depth;
+        const LightOf<V> light = light_in_piece(d, table, piece, s_f, s_b, length, depth);
+        if (hn::AllTrue(d, hn::Le(depth, hn::Set(d, table.two_point_depth)))) return light;
+    }
     return Walk<D>(d, table, s_f, s_b, length).light();
 }
 
