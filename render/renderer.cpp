@@ -7,7 +7,8 @@
 namespace cellproj {
 
 bool draws(Backend backend, const Quality& quality) {
-    return backend == Backend::gl_osmesa || (!light_at_vertices(quality.method) && quality.target == TargetFormat::rgba32f);
+    if (backend == Backend::gl_osmesa) return !quality.order_per_pixel;
+    return !light_at_vertices(quality.method) && quality.target == TargetFormat::rgba32f;
 }
 
 std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options) {

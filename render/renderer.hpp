@@ -3,7 +3,9 @@
 // Scene and camera to picture.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "classify/method.hpp"
@@ -12,6 +14,7 @@
 #include "render/scene.hpp"
 #include "render/statistics.hpp"
 #include "render/target_format.hpp"
+#include "sort/view_order.hpp"
 
 namespace cellproj {
 
@@ -19,6 +22,11 @@ namespace cellproj {
 struct Quality {
     Method method = {};                           // how a segment becomes light
     TargetFormat target = TargetFormat::rgba32f;  // what cells are blended in
+    std::optional<OrderMethod> order = {};        // how cells are sorted; nothing: exactly for this mesh
+    // CPU backend: each pixel sorts what its ray meets, instead of an order of cells. Exact at pixel centres for any mesh whose cells do
+    // not overlap, cyclic or not; `order` and `check_rays` do not count then.
+    bool order_per_pixel = false;
+    std::size_t check_rays = 0;                   // after the frame, for the statistics: rays that judge the order
 };
 
 // A renderer keeps what does not depend on the view (adjacency, table, visibility of cells) for the scene it drew last: a

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,10 +20,14 @@ namespace cellproj::cli {
 
 namespace {
 
+// Enough to meet a wrong order that shows, and done in about a second.
+constexpr std::size_t rays_of_proof = 4096;
+
 struct RenderOptions {
     SceneOptions scene;
     std::filesystem::path output, stats;
-    std::string method = to_string(Method{}), target = to_string(Quality{}.target);
+    std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto";
+    bool verify_order = false;
     std::vector<double> background{1, 1, 1};
     std::string backend = "auto";
     int threads = 0;
@@ -50,7 +55,7 @@ std::vector<Camera> cameras_of_pictures(const RenderOptions& options, const Inpu
 Backend choose_backend(const RenderOptions& options, const Quality& quality) {
     if (options.backend == "gl") return Backend::gl_osmesa;
     if (options.backend == "cpu") return Backend::cpu;
-    return draws(Backend::cpu, quality) ? Backend::cpu : Backend::gl_osmesa;
+    return draws(Backend::cpu, quality) || quality.order_per_pixel ? Backend::cpu : Backend::gl_osmesa;
 }
 
 // picture.png → picture_007.png when there are several.
@@ -81,11 +86,25 @@ void warn(const Image& image, const Statistics& statistics, const std::filesyste
                      "the transfer function's range\n",
                      file.c_str(), statistics.counts.drawn, statistics.counts.cells);
     }
+    if (!statistics.order_exact) {
+        std::fprintf(stderr,
+                     "cellproj: warning: %s: the order of cells (%s) is not proven to be exact for this mesh and view: colours may be "
+                     "wrong where cells stand in the wrong order\n",
+                     file.c_str(), statistics.order.c_str());
+    }
     if (statistics.counts.unordered > 0) {
         std::fprintf(stderr,
                      "cellproj: warning: %s: %zu cells lie in visibility cycles and were ordered by depth only\n",
                      file.c_str(), statistics.counts.unordered);
     }
+}
+
+// What --verify-order found.
+void print_proof(const Statistics& s) {
+    if (!s.order_check) return;
+    std::printf("order %s%s: %zu face relations violated; %zu of %zu rays meet cells in another order (%zu pairs)\n", s.order.c_str(),
+                s.order_exact ? ", exact" : "", s.counts.order_violations, s.order_check->wrong_rays, s.order_check->rays,
+                s.order_check->wrong_pairs);
 }
 
 void print_line(const std::filesystem::path& file, const Statistics& s) {
@@ -112,7 +131,10 @@ void render_pictures(const RenderOptions& options) {
     // Everything that can be refused without reading the mesh comes first.
     const ImageSize size = require_possible(options.scene);
     const Quality quality{.method = parse_method(options.method, "--method"),
-                          .target = parse_target_format(options.target, "--target")};
+                          .target = parse_target_format(options.target, "--target"),
+                          .order = order_method(options.order),  // nothing: auto, pixel
+                          .order_per_pixel = options.order == "pixel",
+                          .check_rays = options.verify_order ? rays_of_proof : 0};
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -146,6 +168,7 @@ void render_pictures(const RenderOptions& options) {
         statistics.ms.write = writing.ms();
         warn(image, statistics, file);
         print_line(file, statistics);
+        print_proof(statistics);
         run.pictures.push_back(std::move(statistics));
     }
     print_median(run.pictures);
@@ -177,6 +200,12 @@ void add_render_command(CLI::App& app) {
         ->check(CLI::IsMember({"auto", "cpu", "gl"}))->capture_default_str();
     command->add_option("--threads", options->threads, "Threads of the cpu backend; 0: all that the process may use")
         ->check(CLI::Range(0, 1024))->capture_default_str();
+    command->add_option("--order", options->order,
+                        "How cells are sorted: auto (exact for this mesh), centroid, power, mpvo, bsp or sxmpvo (sort/README.md), "
+                        "or pixel: each pixel by itself, exact for any mesh (cpu backend)")
+        ->check(CLI::IsMember({"auto", "centroid", "power", "mpvo", "bsp", "sxmpvo", "pixel"}))->capture_default_str();
+    command->add_flag("--verify-order", options->verify_order,
+                      "Prove the order of every picture: relations of neighbours, and the sequence of cells along 4096 pixels' rays");
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
     command->callback([options] { render_pictures(*options); });
 }

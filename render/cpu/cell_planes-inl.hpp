@@ -35,7 +35,7 @@ struct alignas(64) CellPlanes {
     // s = first_scalar + (scalar + x·scalar_x + y·scalar_y + n·scalar_n)·depth, depth 1 in parallel views
     Row first_scalar, scalar, scalar_x, scalar_y, scalar_n;
     Row lowest, highest;       // scalar
-    Row base;                  // perspective: 1/depth where the nearness is 0
+    Row base;                  // nearness of the first corner, to which the above are relative; perspective: its 1/depth
     std::int32_t left[columns], top[columns], width[columns], height[columns];  // pixels of the tile; width ≤ 0: none
 };
 
@@ -128,7 +128,7 @@ HWY_INLINE void make_planes(D d, const ScreenCells& cells, const std::uint32_t* 
     const V first_x = hn::Add(x0, left), first_y = hn::Add(y0, top);
     hn::Store(hn::Sub(highest_of(p[0].n, p[1].n, p[2].n, p[3].n), p[0].n), d, planes.nearest);
     hn::Store(hn::Sub(lowest_of(p[0].n, p[1].n, p[2].n, p[3].n), p[0].n), d, planes.farthest);
-    if constexpr (perspective) hn::Store(hn::Add(p[0].n, hn::Set(d, cells.view.base_nearness)), d, planes.base);
+    hn::Store(hn::Add(p[0].n, hn::Set(d, cells.view.base_nearness)), d, planes.base);
 
     // The faces: the one opposite to corner k, its corners in the order of their numbers.
     static constexpr int face[4][3]{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/cpu/cpu_renderer.hpp"
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
@@ -101,7 +102,7 @@ public:
 private:
     void prepare_here(const Scene& scene, const Quality& quality);
     Image render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out);
-    void draw(Image& image, const Region& region, Statistics& statistics);
+    void draw(Image& image, const Region& region, bool order_per_pixel, Statistics& statistics);
 
     oneapi::tbb::task_arena arena_;
     std::optional<PreparedScene> prepared_;
@@ -110,6 +111,7 @@ private:
     ScreenMesh mesh_;
     TileBins bins_;
     std::vector<std::uint8_t> extra_drawn_;
+    oneapi::tbb::enumerable_thread_specific<PendingFragments> pending_;
 };
 
 // Brings what depends on the scene and the quality up to date; usually there is nothing to do.
@@ -143,7 +145,9 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
 
     const Stopwatch sort;
     OrderReport order_report;
-    const ViewOrder order = prepared_->sorter().order(camera.viewpoint(), &order_report, {}, nullptr, prepared_->visible());
+    // Pixels that sort their own fragments want cells nearly sorted, no more.
+    const ViewOrder order =
+        prepared_->order(camera, size, quality.order_per_pixel ? OrderMethod::centroid : quality.order, &order_report);
     statistics.ms.sort = sort.ms();
 
     const Stopwatch projecting;
@@ -160,7 +164,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
             bins_.begin(mesh_.cells(), region, items, extra_drawn_);
             statistics.counts.drawn += bins_.drawn();
             statistics.ms.project += binning.ms();
-            draw(image, region, statistics);
+            draw(image, region, quality.order_per_pixel, statistics);
         }
     statistics.ms.total = total.ms();
 
@@ -171,29 +175,31 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     statistics.counts.drawn += static_cast<std::size_t>(std::unique(parts.begin(), parts.end()) - parts.begin());
     statistics.counts.cells = scene.mesh->tets.size();
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
-    statistics.counts.unordered = order_report.unordered;
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
     statistics.table_bytes = classification_->bytes();
     statistics.backend = "cpu";
     statistics.backend_version = instruction_set() + ", " + std::to_string(oneapi::tbb::this_task_arena::max_concurrency()) +
                                  (oneapi::tbb::this_task_arena::max_concurrency() == 1 ? " thread" : " threads");
-    statistics.order = to_string(order_report.method);
     if (out) {  // the proof of the order is no part of the frame
-        statistics.counts.order_violations =
-            count_order_violations(*scene.mesh, prepared_->sorter().adjacency(), order, camera.viewpoint());
+        if (quality.order_per_pixel) {
+            statistics.order = "pixel";
+            statistics.order_exact = true;
+        } else {
+            prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
+        }
         *out = std::move(statistics);
     }
     return image;
 }
 
 // Slab by slab from the front, each tile by one task: the same order of operations for any number of threads.
-void CpuRenderer::draw(Image& image, const Region& region, Statistics& statistics) {
+void CpuRenderer::draw(Image& image, const Region& region, bool order_per_pixel, Statistics& statistics) {
     const int columns = (region.width + tile_side - 1) / tile_side, rows = (region.height + tile_side - 1) / tile_side;
     std::atomic<std::size_t> fragments = 0;
     for (;;) {
         const Stopwatch filling;
-        const bool some = bins_.next();
+        const bool some = bins_.next(order_per_pixel);
         statistics.ms.project += filling.ms();
         if (!some) break;
         const Stopwatch drawing;
@@ -206,7 +212,9 @@ void CpuRenderer::draw(Image& image, const Region& region, Statistics& statistic
                 const int x = region.x + column * tile_side, y = region.y + row * tile_side;
                 const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
                                 static_cast<std::size_t>(image.width)};
-                fragments += draw_tile(mesh_.cells(), classification_->shading(), tile, items);
+                fragments += order_per_pixel
+                                 ? draw_tile_by_pixels(mesh_.cells(), classification_->shading(), tile, items, pending_.local())
+                                 : draw_tile(mesh_.cells(), classification_->shading(), tile, items);
             },
             oneapi::tbb::simple_partitioner());
         statistics.ms.draw += drawing.ms();

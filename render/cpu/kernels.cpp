@@ -73,7 +73,9 @@ std::size_t FindBoxes(const ScreenCells& cells, const Region& region, std::span<
     return drawn;
 }
 
-std::size_t DrawTile(const ScreenCells& cells, const Shading& shading, const Tile& target, std::span<const std::uint32_t> items) {
+// Loads a tile's pixels, draws, and stores them.
+template <class Draw>
+HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Tile& target, const Draw& draw_as) {
     HWY_ALIGN TileState tile;
     const View& view = cells.view;
     tile.x = static_cast<float>(target.x) + 0.5F - 0.5F * static_cast<float>(view.width);
@@ -83,16 +85,31 @@ std::size_t DrawTile(const ScreenCells& cells, const Shading& shading, const Til
         std::memcpy(tile.rgba[tile_side * y], target.pixels + static_cast<std::size_t>(y) * target.stride, row_bytes);
         tile.open[y] = target.width == 32 ? ~0U : (1U << target.width) - 1U;
     }
-    const bool constant = !cells.cell_scalars.empty();
-    std::size_t fragments = 0;
-    if (view.perspective) {
-        fragments = constant ? draw<true, true>(cells, shading, target, items, tile) : draw<true, false>(cells, shading, target, items, tile);
-    } else {
-        fragments = constant ? draw<false, true>(cells, shading, target, items, tile) : draw<false, false>(cells, shading, target, items, tile);
-    }
+    const std::size_t fragments = draw_as(tile);
     for (int y = 0; y < target.height; ++y)
         std::memcpy(target.pixels + static_cast<std::size_t>(y) * target.stride, tile.rgba[tile_side * y], row_bytes);
     return fragments;
+}
+
+std::size_t DrawTile(const ScreenCells& cells, const Shading& shading, const Tile& target, std::span<const std::uint32_t> items) {
+    const bool perspective = cells.view.perspective, constant = !cells.cell_scalars.empty();
+    return on_tile(cells, target, [&](TileState& tile) HWY_ATTR {
+        if (perspective)
+            return constant ? draw<true, true>(cells, shading, target, items, tile) : draw<true, false>(cells, shading, target, items, tile);
+        return constant ? draw<false, true>(cells, shading, target, items, tile) : draw<false, false>(cells, shading, target, items, tile);
+    });
+}
+
+std::size_t DrawTileByPixels(const ScreenCells& cells, const Shading& shading, const Tile& target, std::span<const std::uint32_t> items,
+                             PendingFragments& pending) {
+    const bool perspective = cells.view.perspective, constant = !cells.cell_scalars.empty();
+    return on_tile(cells, target, [&](TileState& tile) HWY_ATTR {
+        if (perspective)
+            return constant ? draw_by_pixels<true, true>(cells, shading, target, items, tile, pending)
+                            : draw_by_pixels<true, false>(cells, shading, target, items, tile, pending);
+        return constant ? draw_by_pixels<false, true>(cells, shading, target, items, tile, pending)
+                        : draw_by_pixels<false, false>(cells, shading, target, items, tile, pending);
+    });
 }
 
 }  // namespace cellproj::cpu::HWY_NAMESPACE
@@ -104,6 +121,7 @@ namespace cellproj::cpu {
 
 HWY_EXPORT(FindBoxes);
 HWY_EXPORT(DrawTile);
+HWY_EXPORT(DrawTileByPixels);
 
 std::size_t find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
                        std::span<TileBox> boxes, std::span<std::uint32_t, tiles_per_region> counts,
@@ -115,6 +133,12 @@ std::size_t find_boxes(const ScreenCells& cells, const Region& region, std::span
 std::size_t draw_tile(const ScreenCells& cells, const Shading& shading, const Tile& tile, std::span<const std::uint32_t> items) {
     assert(tile.width <= tile_side && tile.height <= tile_side);
     return HWY_DYNAMIC_DISPATCH(DrawTile)(cells, shading, tile, items);
+}
+
+std::size_t draw_tile_by_pixels(const ScreenCells& cells, const Shading& shading, const Tile& tile,
+                                std::span<const std::uint32_t> items, PendingFragments& pending) {
+    assert(tile.width <= tile_side && tile.height <= tile_side);
+    return HWY_DYNAMIC_DISPATCH(DrawTileByPixels)(cells, shading, tile, items, pending);
 }
 
 namespace {

@@ -93,6 +93,19 @@ struct Tile {
 // number of fragments: segments that have a length.
 std::size_t draw_tile(const ScreenCells& cells, const Shading& shading, const Tile& tile, std::span<const std::uint32_t> items);
 
+// Fragments that wait until no cell can put one in front of them any more. Memory of a thread, kept from tile to tile.
+struct PendingFragments {
+    std::vector<float> front, back, length, key;
+    std::vector<std::int32_t> pixel;
+    std::vector<float> nearest;          // per group of items: no later one is nearer
+    std::vector<std::uint32_t> sorted;   // numbers of fragments, pixel by pixel
+};
+
+// The same for items in any order, best nearly sorted: the fragments of each pixel are sorted before they are composited. The fewer
+// cells stand before nearer ones and the smaller they are, the fewer fragments wait.
+std::size_t draw_tile_by_pixels(const ScreenCells& cells, const Shading& shading, const Tile& tile,
+                                std::span<const std::uint32_t> items, PendingFragments& pending);
+
 // The instruction sets that this build has and this machine can run, best first, by Highway's names ("AVX3", "AVX2", "SSE4" …).
 std::vector<std::string> instruction_sets();
 // The one that is used.

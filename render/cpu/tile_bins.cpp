@@ -39,11 +39,11 @@ void TileBins::begin(const ScreenCells& cells, const Region& region, std::span<c
     drawn_ = drawn;
 }
 
-bool TileBins::next() {
+bool TileBins::next(bool all) {
     if (chunks_left_ == 0) return false;
     const std::size_t end = chunks_left_;
     std::size_t entries = entries_of_chunk_[--chunks_left_];
-    while (chunks_left_ > 0 && entries + entries_of_chunk_[chunks_left_ - 1] <= slab_entries)
+    while (chunks_left_ > 0 && (all || entries + entries_of_chunk_[chunks_left_ - 1] <= slab_entries))
         entries += entries_of_chunk_[--chunks_left_];
     entries_.resize(std::max(entries_.size(), entries));
 

@@ -20,8 +20,8 @@ public:
     // Bins items, back to front, over a region. All cores take part. Both arguments must outlive the slabs.
     void begin(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
                std::span<std::uint8_t> extra_drawn);
-    // The next slab towards the back. False when there is none left.
-    bool next();
+    // The next slab towards the back. False when there is none left. `all`: the rest in one, whatever it takes.
+    bool next(bool all = false);
     // The slab's items that meet a tile of the region, back to front.
     std::span<const std::uint32_t> tile(int x, int y) const;
     // Whole cells that the region counts as drawn (find_boxes).

@@ -22,6 +22,7 @@ struct Fragments {
 
     HWY_ALIGN List front, back;                                       // scalars
     HWY_ALIGN List length;                                            // along the axis of the view [scene units]
+    HWY_ALIGN List key;                                               // for pixels that sort: the middle's nearness
     HWY_ALIGN std::int32_t pixel[capacity + CellPlanes::columns];     // x + tile_side·y
     std::size_t count = 0;
 };
@@ -84,7 +85,7 @@ HWY_NOINLINE void composite(D d, const View& view, const Shading& shading, TileS
 }
 
 // The fragments of one cell of the group.
-template <bool perspective, bool constant, class D>
+template <bool perspective, bool constant, bool keyed, class D>
 HWY_INLINE void add_fragments(D d, const View& view, const CellPlanes& cell, std::size_t k, TileState& tile) {
     const hn::RebindToSigned<D> di;
     const hn::RebindToUnsigned<D> du;
@@ -136,6 +137,10 @@ HWY_INLINE void add_fragments(D d, const View& view, const CellPlanes& cell, std
                 length = hn::IfThenElse(hn::Gt(w_front, hn::Set(d, view.near_plane)), depth_back, hn::Mul(length, both));
             }
             hn::StoreU(hn::Compress(length, hit), d, f.length + f.count);
+            if constexpr (keyed) {
+                const V middle = hn::MulAdd(hn::Set(d, 0.5F), hn::Add(front, back), hn::Set(d, cell.base[k]));
+                hn::StoreU(hn::Compress(middle, hit), d, f.key + f.count);
+            }
             const int first_pixel = cell.left[k] + x + tile_side * (cell.top[k] + y);
             hn::StoreU(hn::Compress(hn::Add(lane_pixel, hn::Set(di, first_pixel)), hn::RebindMask(di, hit)), di, f.pixel + f.count);
             const V first = hn::Set(d, cell.first_scalar[k]);
@@ -221,11 +226,129 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
                     seen = close_pixels(tile, shading.opaque, target.width, target.height);
                 }
             }
-            add_fragments<perspective, constant>(d, cells.view, tile.planes, k, tile);
+            add_fragments<perspective, constant, false>(d, cells.view, tile.planes, k, tile);
         }
     }
     fragments += tile.fragments.count;
     composite<perspective>(d, cells.view, shading, tile);
+    return fragments;
+}
+
+// For each group of items, from the last one, which is drawn first: the nearest nearness of it and of all behind it.
+HWY_INLINE void find_nearest(const ScreenCells& cells, std::span<const std::uint32_t> items, std::size_t group,
+                             std::vector<float>& nearest) {
+    const std::size_t groups = (items.size() + group - 1) / group;
+    nearest.resize(groups + 1);
+    nearest[groups] = -1e30F;
+    for (std::size_t g = groups; g-- > 0;) {
+        float n = nearest[g + 1];
+        const std::size_t end = items.size() - g * group, begin = end - HWY_MIN(group, end);
+        for (std::size_t i = begin; i < end; ++i)
+            for (const VertexId v : cells.corners(items[i])) n = std::max(n, cells.points[v].nearness + cells.view.base_nearness);
+        nearest[g] = n;
+    }
+}
+
+HWY_INLINE void move_to_pending(Fragments& from, PendingFragments& to) {
+    const auto append = [&](auto& list, const auto* begin) { list.insert(list.end(), begin, begin + from.count); };
+    append(to.front, from.front);
+    append(to.back, from.back);
+    append(to.length, from.length);
+    append(to.key, from.key);
+    append(to.pixel, from.pixel);
+    from.count = 0;
+}
+
+// Composites the pending fragments whose key is at least `nearest`, pixel by pixel from front to back; the others stay.
+template <bool perspective, class D>
+HWY_INLINE void composite_pending(D d, const View& view, const Shading& shading, TileState& tile, PendingFragments& pending,
+                                  float nearest) {
+    constexpr std::size_t pixels = tile_side * tile_side;
+    std::uint32_t first[pixels + 1] = {};
+    const std::size_t count = pending.key.size();
+    for (std::size_t i = 0; i < count; ++i)
+        if (pending.key[i] >= nearest) ++first[static_cast<std::size_t>(pending.pixel[i]) + 1];
+    for (std::size_t p = 0; p < pixels; ++p) first[p + 1] += first[p];
+    pending.sorted.resize(first[pixels]);
+    std::uint32_t next[pixels];
+    std::memcpy(next, first, sizeof next);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        if (pending.key[i] >= nearest) pending.sorted[next[static_cast<std::size_t>(pending.pixel[i])]++] = static_cast<std::uint32_t>(i);
+    Fragments& f = tile.fragments;
+    for (std::size_t p = 0; p < pixels; ++p) {
+        std::uint32_t* const begin = pending.sorted.data() + first[p];
+        const std::size_t n = first[p + 1] - first[p];
+        // Insertion: cells come nearly sorted. Where they do not, a sort that does not mind.
+        std::size_t moves = 0;
+        for (std::size_t i = 1; i < n && moves <= 8 * n; ++i) {
+            const std::uint32_t fragment = begin[i];
+            std::size_t j = i;
+            for (; j > 0 && pending.key[begin[j - 1]] < pending.key[fragment]; --j) begin[j] = begin[j - 1];
+            begin[j] = fragment;
+            moves += i - j;
+        }
+        if (moves > 8 * n)
+            std::sort(begin, begin + n, [&](std::uint32_t a, std::uint32_t b) {
+                return pending.key[a] != pending.key[b] ? pending.key[a] > pending.key[b] : a < b;
+            });
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint32_t fragment = begin[i];
+            f.front[f.count] = pending.front[fragment];
+            f.back[f.count] = pending.back[fragment];
+            f.length[f.count] = pending.length[fragment];
+            f.pixel[f.count] = pending.pixel[fragment];
+            if (++f.count == Fragments::capacity) composite<perspective>(d, view, shading, tile);
+        }
+    }
+    composite<perspective>(d, view, shading, tile);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (pending.key[i] >= nearest) continue;
+        pending.front[kept] = pending.front[i];
+        pending.back[kept] = pending.back[i];
+        pending.length[kept] = pending.length[i];
+        pending.key[kept] = pending.key[i];
+        pending.pixel[kept++] = pending.pixel[i];
+    }
+    for (auto* list : {&pending.front, &pending.back, &pending.length, &pending.key}) list->resize(kept);
+    pending.pixel.resize(kept);
+}
+
+template <bool perspective, bool constant>
+HWY_INLINE std::size_t draw_by_pixels(const ScreenCells& cells, const Shading& shading, const Tile& target,
+                                      std::span<const std::uint32_t> items, TileState& tile, PendingFragments& pending) {
+    const hn::CappedTag<float, CellPlanes::columns> d;
+    const std::size_t lanes = hn::Lanes(d);
+    find_nearest(cells, items, lanes, pending.nearest);
+    std::size_t fragments = 0, enough = 8 * Fragments::capacity;
+    bool seen = close_pixels(tile, shading.opaque, target.width, target.height);
+    std::size_t left = items.size();
+    for (std::size_t group = 0; seen && left > 0; ++group) {
+        std::uint32_t of_group[CellPlanes::columns];
+        const std::size_t count = HWY_MIN(lanes, left);
+        for (std::size_t i = 0; i < count; ++i) of_group[i] = items[--left];
+        make_planes<perspective, constant>(d, cells, of_group, count, tile.x, tile.y, target.width, target.height, tile.corners,
+                                           tile.planes);
+        for (std::size_t k = 0; k < count; ++k) {
+            if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0) continue;
+            if (tile.some_closed && !meets_open_pixel(tile, tile.planes, k)) continue;
+            const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
+            if (tile.fragments.count + most > Fragments::capacity) {
+                fragments += tile.fragments.count;
+                move_to_pending(tile.fragments, pending);
+            }
+            add_fragments<perspective, constant, true>(d, cells.view, tile.planes, k, tile);
+        }
+        if (pending.key.size() < enough) continue;
+        fragments += tile.fragments.count;
+        move_to_pending(tile.fragments, pending);
+        composite_pending<perspective>(d, cells.view, shading, tile, pending, pending.nearest[group + 1]);
+        seen = close_pixels(tile, shading.opaque, target.width, target.height);
+        enough = HWY_MAX(8 * Fragments::capacity, 2 * pending.key.size());
+    }
+    fragments += tile.fragments.count;
+    move_to_pending(tile.fragments, pending);
+    composite_pending<perspective>(d, cells.view, shading, tile, pending, -1e35F);
     return fragments;
 }
 

@@ -132,7 +132,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 
     const Stopwatch sort;
     OrderReport order_report;
-    const ViewOrder order = prepared_->sorter().order(camera.viewpoint(), &order_report);
+    const ViewOrder order = prepared_->order(camera, size, quality.order, &order_report);
     statistics.ms.sort = sort.ms();
 
     const Stopwatch transform;
@@ -150,16 +150,13 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 
     statistics.counts.cells = scene.mesh->tets.size();
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
-    statistics.counts.unordered = order_report.unordered;
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
     statistics.table_bytes = shader_ ? shader_->table_bytes() : 0;
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
-    statistics.order = to_string(order_report.method);
     if (out) {  // the proof of the order is no part of the frame
-        statistics.counts.order_violations =
-            count_order_violations(*scene.mesh, prepared_->sorter().adjacency(), order, camera.viewpoint());
+        prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
         *out = std::move(statistics);
     }
     return image;
