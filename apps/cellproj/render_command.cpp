@@ -53,6 +53,9 @@ std::vector<Camera> cameras_of_pictures(const RenderOptions& options, const Inpu
 
 // Without a GPU the native backend is the faster one by far; what it does not draw, OpenGL does.
 Backend choose_backend(const RenderOptions& options, const Quality& quality) {
+    if (options.backend == "gl" && quality.order_per_pixel) {
+        throw Error({ErrorKind::option, "--order", "an order of cells for the OpenGL backend", "pixel", "use --backend cpu"});
+    }
     if (options.backend == "gl") return Backend::gl_osmesa;
     if (options.backend == "cpu") return Backend::cpu;
     return draws(Backend::cpu, quality) || quality.order_per_pixel ? Backend::cpu : Backend::gl_osmesa;
