@@ -129,7 +129,7 @@ protected:
         return shared;
     }
     static ImageSize size() { return sanitized ? ImageSize{128, 128} : ImageSize{512, 512}; }
-    static std::size_t samples() { return sanitized ? 500 : 4000; }
+    static std::size_t samples() { return sanitized ? 300 : 1500; }
     static Camera inside() {
         Camera camera = view_of_unit_cube(Projection::perspective);
         camera.eye = {0.31, 0.42, 0.53};
