@@ -101,9 +101,9 @@ TEST_F(CommandLine, TheBackendIsChosenAndTold) {
     EXPECT_EQ(backend_of("--backend cpu --threads 1 --order pixel"), "cpu");
     EXPECT_EQ(backend_of("--backend gl"), "gl_osmesa");
     EXPECT_EQ(backend_of("--method shirley-tuchman"), "gl_osmesa");  // which only it draws
-    expect_refused("render cube.vtk -o x.png --backend cpu --method shirley-tuchman", {"method", "--backend gl"});
+    expect_refused("render cube.vtk -o x.png --backend cpu --method shirley-tuchman", {"--method", "--backend gl"});
     expect_refused("render cube.vtk -o x.png --backend gl --order pixel", {"--order", "--backend cpu"});
-    expect_refused("render cube.vtk -o x.png --backend cpu --target rgba8", {"target", "rgba32f"});
+    expect_refused("render cube.vtk -o x.png --backend cpu --target rgba8", {"--target", "rgba32f"});
 }
 
 TEST_F(CommandLine, MethodAndTargetAreChosenAndTold) {

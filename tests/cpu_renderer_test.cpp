@@ -409,7 +409,7 @@ TEST(CpuRenderer, PicturesLargerThanARegionHaveNoSeams) {
 }
 
 TEST(CpuRenderer, OpaqueScenesStopEarly) {
-    const TetMesh mesh = grid_mesh(sanitized ? 8 : 20, 0.2);
+    const TetMesh mesh = grid_mesh(sanitized ? 14 : 20, 0.2);
     const Camera camera = view_of_unit_cube(Projection::perspective);
     Statistics thin, thick;
     cpu().render(scene_of(mesh, waves, constant_medium(0.01)), camera, {256, 256}, {}, &thin);

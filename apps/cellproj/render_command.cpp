@@ -53,9 +53,6 @@ std::vector<Camera> cameras_of_pictures(const RenderOptions& options, const Inpu
 
 // Without a GPU the native backend is the faster one by far; what it does not draw, OpenGL does.
 Backend choose_backend(const RenderOptions& options, const Quality& quality) {
-    if (options.backend == "gl" && quality.order_per_pixel) {
-        throw Error({ErrorKind::option, "--order", "an order of cells for the OpenGL backend", "pixel", "use --backend cpu"});
-    }
     if (options.backend == "gl") return Backend::gl_osmesa;
     if (options.backend == "cpu") return Backend::cpu;
     return draws(Backend::cpu, quality) || quality.order_per_pixel ? Backend::cpu : Backend::gl_osmesa;
@@ -138,6 +135,8 @@ void render_pictures(const RenderOptions& options) {
                           .order = order_method(options.order),  // nothing: auto, pixel
                           .order_per_pixel = options.order == "pixel",
                           .check_rays = options.verify_order ? rays_of_proof : 0};
+    const Backend backend = choose_backend(options, quality);
+    require_drawn(backend, quality);
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -147,7 +146,7 @@ void render_pictures(const RenderOptions& options) {
     RunStatistics run;
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
-    const auto renderer = make_renderer(choose_backend(options, quality), {.threads = options.threads});
+    const auto renderer = make_renderer(backend, {.threads = options.threads});
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
