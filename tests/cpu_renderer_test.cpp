@@ -72,7 +72,6 @@ double max_difference(const Image& a, const Image& b) {
 // The worst channel over a sample of the picture.
 ImageError error_of(const Scene& scene, const Reference& judge, const Camera& camera, ImageSize size, const Quality& quality,
                     std::size_t pixels) {
-    (void)scene;
     const Image image = cpu().render(scene, camera, size, quality);
     return compare(image, judge.pixels(camera, size, judge.sample(camera, size, pixels)));
 }
@@ -406,6 +405,17 @@ TEST(CpuRenderer, PicturesLargerThanARegionHaveNoSeams) {
     EXPECT_EQ(statistics.counts.drawn, scene.mesh->tets.size());  // each counted once
     const Reference judge(scene);
     EXPECT_LT(worst(compare(image, judge.pixels(camera, large, judge.sample(camera, large, 1000)))), 2e-5);
+}
+
+// A tenth of a degree: the corners of the cells lie 100,000 pixels away.
+TEST(CpuRenderer, AStrongZoomKeepsItsDigits) {
+    const Scene scene = scene_of(grid_mesh(3, 0.2), waves, ramp());
+    const Reference judge(scene);
+    Camera camera = view_of_unit_cube(Projection::perspective);
+    camera.fov_y_degrees = 0.1;
+    const ImageError error = error_of(scene, judge, camera, small, {}, 300);
+    EXPECT_GT(error.pixels, 200U);
+    EXPECT_LT(worst(error), 2e-5);  // positions are rounded to 1e-7 of the mesh
 }
 
 TEST(CpuRenderer, OpaqueScenesStopEarly) {
