@@ -108,31 +108,36 @@ CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, Imag
     });
 }
 
-// Calls draw(corners) for every visible cell or, where the near plane cuts one, for its pieces; it says whether anything
-// was drawn.
+// Calls draw(corners) for every visible cell or, where it is split or cut by the near plane, for its pieces; it says whether
+// anything was drawn.
 template <class Vertex, class Draw>
-void CellStream::for_each_piece(std::span<const CellId> cells, Triangles<Vertex>& batch, Draw draw) const {
+void CellStream::for_each_piece(const ViewOrder& order, Triangles<Vertex>& batch, Draw draw) const {
     const auto& visible = prepared_.visible();
-    for (const CellId cell : cells) {
-        if (!visible[cell]) continue;
-        Corners corners;
+    const auto cells = static_cast<std::uint32_t>(visible.size());
+    const auto draw_clipped = [&](const std::array<EyeVertex, 4>& corners) {
+        const Pieces pieces = clipped(corners);
         bool drawn = false;
-        if (load(cell, corners)) {
-            drawn = draw(corners);
-        } else {
-            const Pieces pieces = clipped(cell);
-            for (std::size_t piece = 0; piece < pieces.count; ++piece) drawn |= draw(pieces.corners[piece]);
+        for (std::size_t piece = 0; piece < pieces.count; ++piece) drawn |= draw(pieces.corners[piece]);
+        return drawn;
+    };
+    for (const std::uint32_t item : order.items) {
+        if (item >= cells) {
+            const CellPiece& piece = order.pieces[item - cells];
+            if (visible[piece.cell] && draw_clipped(eye_corners(piece))) batch.drawn_split_cells.push_back(piece.cell);
+            continue;
         }
-        if (drawn) ++batch.drawn_cells;
+        if (!visible[item]) continue;
+        Corners corners;
+        if (load(item, corners) ? draw(corners) : draw_clipped(eye_corners(item))) ++batch.drawn_cells;
     }
 }
 
-void CellStream::project(std::span<const CellId> cells, TriangleBatch& batch) const {
-    for_each_piece(cells, batch, [&](const Corners& corners) { return project_corners(corners, batch); });
+void CellStream::project(const ViewOrder& order, TriangleBatch& batch) const {
+    for_each_piece(order, batch, [&](const Corners& corners) { return project_corners(corners, batch); });
 }
 
-void CellStream::project(std::span<const CellId> cells, const VertexLighting& lighting, LitBatch& batch) const {
-    for_each_piece(cells, batch, [&](const Corners& corners) { return light_corners(corners, lighting, batch); });
+void CellStream::project(const ViewOrder& order, const VertexLighting& lighting, LitBatch& batch) const {
+    for_each_piece(order, batch, [&](const Corners& corners) { return light_corners(corners, lighting, batch); });
 }
 
 glm::dvec2 CellStream::snapped_position(const glm::dvec3& eye_point) const {
@@ -158,13 +163,38 @@ bool CellStream::load(CellId cell, Corners& corners) const {
     return true;
 }
 
-CellStream::Pieces CellStream::clipped(CellId cell) const {
+std::array<EyeVertex, 4> CellStream::eye_corners(CellId cell) const {
     const TetMesh& mesh = *prepared_.scene().mesh;
     const bool per_point = prepared_.scene().field->location == FieldLocation::points;
     std::array<EyeVertex, 4> corners;
     for (std::size_t i = 0; i < 4; ++i) {
         const VertexId v = mesh.tets[cell][i];
         corners[i] = {transform_.to_eye((mesh.points[v] - eye_) / prepared_.units().length), scalars_[per_point ? v : cell]};
+    }
+    return corners;
+}
+
+// Position and scalar are linear in space: both are mixed by the same weights.
+std::array<EyeVertex, 4> CellStream::eye_corners(const CellPiece& piece) const {
+    const std::array<EyeVertex, 4> cell = eye_corners(piece.cell);
+    std::array<EyeVertex, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+        corners[i] = {glm::dvec3(0.0), 0.0};
+        for (int v = 0; v < 4; ++v) {
+            const EyeVertex& vertex = cell[static_cast<std::size_t>(v)];
+            corners[i].position += piece.corners[i][v] * vertex.position;
+            corners[i].scalar += piece.corners[i][v] * vertex.scalar;
+        }
+    }
+    return corners;
+}
+
+// The part in front of the near plane, on the screen.
+CellStream::Pieces CellStream::clipped(const std::array<EyeVertex, 4>& corners) const {
+    if (!transform_.perspective()) {
+        Pieces whole{1, {}};
+        for (std::size_t i = 0; i < 4; ++i) whole.corners[0][i] = on_screen(corners[i].position, corners[i].scalar);
+        return whole;
     }
     const ClippedTet tets = clip_near(corners, near_depth_);
     Pieces pieces{tets.count, {}};

@@ -43,12 +43,14 @@ template <class Vertex>
 struct Triangles {
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
-    std::size_t drawn_cells = 0;
+    std::size_t drawn_cells = 0;             // whole ones
+    std::vector<CellId> drawn_split_cells;  // of those that come as pieces, one entry per piece drawn
 
     void clear() {
         vertices.clear();
         indices.clear();
         drawn_cells = 0;
+        drawn_split_cells.clear();
     }
 };
 using TriangleBatch = Triangles<StreamVertex>;
@@ -59,11 +61,11 @@ class CellStream {
 public:
     CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size);
 
-    // Appends the triangles of the given cells, in their order. Cells that cannot be seen, lie outside the view, or fall
+    // Appends the triangles of cells and pieces of cells, in their order. Those that cannot be seen, lie outside the view, or fall
     // between pixel centres add nothing.
-    void project(std::span<const CellId> cells, TriangleBatch& batch) const;
+    void project(const ViewOrder& order, TriangleBatch& batch) const;
     // The same as the classical split, with light at its vertices.
-    void project(std::span<const CellId> cells, const VertexLighting& lighting, LitBatch& batch) const;
+    void project(const ViewOrder& order, const VertexLighting& lighting, LitBatch& batch) const;
 
     const ScreenTransform& transform() const { return transform_; }
     // Perspective: depth of the near plane [SceneUnits::length], a thousandth of the distance to what the camera looks at or of
@@ -80,11 +82,13 @@ private:
     };
 
     template <class Vertex, class Draw>
-    void for_each_piece(std::span<const CellId> cells, Triangles<Vertex>& batch, Draw draw) const;
+    void for_each_piece(const ViewOrder& order, Triangles<Vertex>& batch, Draw draw) const;
     glm::dvec2 snapped_position(const glm::dvec3& eye_point) const;
     ScreenVertex on_screen(const glm::dvec3& eye_point, double scalar) const;
     bool load(CellId cell, Corners& corners) const;
-    Pieces clipped(CellId cell) const;
+    std::array<EyeVertex, 4> eye_corners(CellId cell) const;
+    std::array<EyeVertex, 4> eye_corners(const CellPiece& piece) const;
+    Pieces clipped(const std::array<EyeVertex, 4>& corners) const;
     bool project_corners(const Corners& corners, TriangleBatch& batch) const;
     bool light_corners(const Corners& corners, const VertexLighting& lighting, LitBatch& batch) const;
     VertexLight light_at(const ProjectedVertex& thick, const VertexLighting& lighting) const;

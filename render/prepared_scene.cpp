@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "mesh/error.hpp"
+#include "render/order_check.hpp"
 
 namespace cellproj {
 
@@ -141,6 +142,24 @@ double PreparedScene::mean_chord() {
 void PreparedScene::set_transfer(std::shared_ptr<const TransferFunction> transfer) {
     scene_.transfer = std::move(transfer);
     visible_ = find_visible(scene_, units_, bins_);
+}
+
+ViewOrder PreparedScene::order(const Camera& camera, ImageSize size, std::optional<OrderMethod> method, OrderReport* report) {
+    const PixelGrid pixels = pixel_grid(camera, size);
+    return sorter_.order(camera.viewpoint(), report, method, &pixels, visible_);
+}
+
+void PreparedScene::judge(const ViewOrder& order, const OrderReport& report, const Camera& camera, ImageSize size,
+                          std::size_t check_rays, Statistics& statistics) {
+    statistics.order = to_string(report.method);
+    statistics.order_exact = report.exact;
+    statistics.counts.unordered = report.unordered;
+    statistics.counts.cycles = report.cycles;
+    statistics.counts.split_cells = report.split_cells;
+    statistics.counts.order_violations = sorter_.count_violations(order, camera.viewpoint());
+    if (check_rays == 0) return;
+    if (!ray_index_) ray_index_ = std::make_unique<const RayIndex>(*scene_.mesh);
+    statistics.order_check = check_order(*ray_index_, visible_.size(), order, camera, size, check_rays);
 }
 
 }  // namespace cellproj

@@ -3,11 +3,16 @@
 // What every backend needs of a scene and no view changes: its units, which cells can be seen at all, and the order's graph.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "project/camera.hpp"
+#include "render/ray_index.hpp"
 #include "render/scene.hpp"
+#include "render/statistics.hpp"
 #include "sort/visibility_sorter.hpp"
 
 namespace cellproj {
@@ -32,6 +37,11 @@ public:
     const Scene& scene() const { return scene_; }
     const SceneUnits& units() const { return units_; }
     VisibilitySorter& sorter() { return sorter_; }
+    // The order of the visible cells for a picture; valid until the next one. `method`: nothing for one that is exact for this mesh.
+    ViewOrder order(const Camera& camera, ImageSize size, std::optional<OrderMethod> method, OrderReport* report);
+    // What an order is worth, into the statistics: the report, violated relations and, for `check_rays` > 0, the judge on as many pixels.
+    void judge(const ViewOrder& order, const OrderReport& report, const Camera& camera, ImageSize size, std::size_t check_rays,
+               Statistics& statistics);
     // Mean length of a segment over all cells and directions, 4·volume / surface by Cauchy's formula [SceneUnits::length],
     // > 0. Found when it is asked for first.
     double mean_chord();
@@ -54,6 +64,7 @@ private:
     SceneUnits units_;
     VisibilitySorter sorter_;
     std::optional<double> mean_chord_;  // once somebody has asked
+    std::unique_ptr<const RayIndex> ray_index_;  // once an order was to be judged
     std::vector<BinRange> bins_;  // #T
     std::vector<std::uint8_t> visible_;
 };

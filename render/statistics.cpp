@@ -19,6 +19,11 @@ Json or_null(const std::optional<T>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
+Json order_check_json(const std::optional<OrderCheck>& check) {
+    if (!check) return nullptr;
+    return {{"rays", check->rays}, {"wrong_rays", check->wrong_rays}, {"wrong_pairs", check->wrong_pairs}};
+}
+
 Json picture_json(const Statistics& picture) {
     const auto& ms = picture.ms;
     const auto& counts = picture.counts;
@@ -35,7 +40,10 @@ Json picture_json(const Statistics& picture) {
               {"culled", counts.culled},
               {"drawn", counts.drawn},
               {"triangles", counts.triangles},
+              {"fragments", counts.fragments},
               {"unordered", counts.unordered},
+              {"cycles", counts.cycles},
+              {"split_cells", counts.split_cells},
               {"order_violations", counts.order_violations}}},
             {"method", picture.method},
             {"target", picture.target},
@@ -43,6 +51,8 @@ Json picture_json(const Statistics& picture) {
             {"backend", picture.backend},
             {"backend_version", picture.backend_version},
             {"order", picture.order},
+            {"order_exact", picture.order_exact},
+            {"order_check", order_check_json(picture.order_check)},
             {"error", or_null(picture.error)}};
 }
 

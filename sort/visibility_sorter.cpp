@@ -3,164 +3,160 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_reduce.h>
 
-#include <algorithm>
-#include <bit>
 #include <cassert>
-#include <cmath>
+#include <functional>
 #include <limits>
-#include <utility>
 
-#include <glm/geometric.hpp>
+#include "sort/cell_graph.hpp"
+#include "sort/depth_keys.hpp"
+#include "sort/mesh_facts.hpp"
+#include "sort/power_keys.hpp"
+#include "sort/topological_sort.hpp"
 
 namespace cellproj {
 
 namespace {
 
-// Grows with the distance from the eye; for an eye at infinity up to a constant and a factor.
-double distance(const Eye& eye, const glm::dvec3& point) {
-    return eye.at_infinity ? -glm::dot(eye.xyz, point) : glm::distance(eye.xyz, point);
+using Range = oneapi::tbb::blocked_range<std::size_t>;
+
+constexpr std::size_t cells_per_task = 4096;
+constexpr auto absent = std::numeric_limits<std::uint32_t>::max();
+
+// Where each whole cell stands in an order.
+std::vector<std::uint32_t> positions(const ViewOrder& order, std::size_t cells) {
+    std::vector<std::uint32_t> position(cells, absent);
+    for (std::uint32_t i = 0; i < order.items.size(); ++i) {
+        if (order.items[i] < cells) position[order.items[i]] = i;
+    }
+    return position;
 }
 
-// The distances that a mesh can have from an eye, mapped onto the depths of a DepthQueue.
-class DepthScale {
-public:
-    DepthScale(const Bounds& box, const Eye& eye) {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (int corner = 0; corner < 8; ++corner) {
-            const double d = distance(eye, {corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                                            corner & 4 ? box.high.z : box.low.z});
-            low = std::min(low, d);
-            high = std::max(high, d);
+// Counts the faces of all cells for which `wrong(cell, face)` holds.
+template <class Wrong>
+std::size_t count_faces(std::size_t cells, Wrong wrong) {
+    const auto count = [&](const Range& range, std::size_t so_far) {
+        for (std::size_t c = range.begin(); c != range.end(); ++c) {
+            for (int face = 0; face < 4; ++face) so_far += wrong(static_cast<CellId>(c), face) ? 1 : 0;
         }
-        // A face or the inside of the box can be nearer than every corner, but never by more than its diagonal.
-        if (!eye.at_infinity) low = std::max(0.0, std::min(low, high - box.diagonal()));
-        low_ = low;
-        scale_ = high > low ? (DepthQueue::depths - 1) / (high - low) : 0.0;
-    }
-
-    std::uint16_t operator()(double d) const {
-        return static_cast<std::uint16_t>(std::clamp((d - low_) * scale_, 0.0, DepthQueue::depths - 1.0));
-    }
-
-private:
-    double low_, scale_;
-};
-
-// Whether the eye lies beyond face i of a cell, on the neighbour's side: +1 yes, −1 no, 0 the face is edge-on. Computed with the
-// exact predicate, hence the same for both cells of the face, up to the sign.
-int beyond_face(const TetMesh& mesh, CellId cell, int face, const Eye& eye) {
-    const auto v = face_vertices(mesh.tets[cell], face);
-    return side_of_plane(eye, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+        return so_far;
+    };
+    return oneapi::tbb::parallel_reduce(Range(0, cells, cells_per_task), std::size_t{0}, count, std::plus<>());
 }
 
-glm::dvec3 centroid(const TetMesh& mesh, CellId cell) {
-    const auto& t = mesh.tets[cell];
-    return 0.25 * (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]] + mesh.points[t[3]]);
+// Whether cells at positions a and b stand the wrong way round when the eye is on b's side (+1) or on a's (−1) of their face.
+bool wrong_way_round(std::uint32_t a, std::uint32_t b, int beyond) {
+    return a != absent && b != absent && beyond != 0 && (beyond > 0) != (b > a);
 }
 
 }  // namespace
 
-VisibilitySorter::VisibilitySorter(const TetMesh& mesh, Adjacency adjacency)
-    : mesh_(mesh), adjacency_(std::move(adjacency)) {
-    assert(adjacency_.neighbours.size() == mesh.tets.size());
+struct VisibilitySorter::State {
+    CellGraph graph;
+    bool convex;
+    TopologicalSort topological;
+    KeySort key_sort;
+    std::optional<bool> delaunay;   // once it was asked for
+    std::optional<PowerKeys> powers;  // likewise
+    std::vector<std::uint32_t> items;
+
+    bool is_delaunay();
+    std::span<const CellId> order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible);
+    std::span<const CellId> order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible, OrderReport& report);
+    std::span<const CellId> order_by_relations(const Eye& eye, OrderReport& report);
+    ViewOrder in_callers_numbers(std::span<const CellId> places);
+};
+
+VisibilitySorter::VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency)
+    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .items = {}})) {
+    state_->convex = fills_convex_body(state_->graph);
 }
 
-// Kahn's topological sort; where it stalls, the farthest cell left is released against its relations.
-std::span<const CellId> VisibilitySorter::order(const Eye& eye, OrderReport* report) {
-    const std::size_t cells = mesh_.tets.size();
-    find_relations(eye);
-    free_.reset(cells);
-    order_.clear();
-    order_.reserve(cells);
-    for (CellId cell = 0; cell < cells; ++cell) {
-        if (behind_[cell] == 0) free_.push(cell, depth_[cell]);
+VisibilitySorter::~VisibilitySorter() = default;
+VisibilitySorter::VisibilitySorter(VisibilitySorter&&) noexcept = default;
+VisibilitySorter& VisibilitySorter::operator=(VisibilitySorter&&) noexcept = default;
+
+bool VisibilitySorter::convex() const { return state_->convex; }
+const CellGraph& VisibilitySorter::graph() const { return state_->graph; }
+Adjacency VisibilitySorter::adjacency() const { return state_->graph.adjacency(); }
+
+ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::optional<OrderMethod> method,
+                                  const PixelGrid* /*pixels*/, std::span<const std::uint8_t> visible) {
+    assert(visible.empty() || visible.size() == state_->graph.size());
+    OrderReport found;
+    found.method = method.value_or(state_->is_delaunay() ? OrderMethod::power : OrderMethod::mpvo);
+    const auto places = found.method == OrderMethod::centroid ? state_->order_by_centroids(eye, visible)
+                        : found.method == OrderMethod::power  ? state_->order_by_powers(eye, visible, found)
+                                                              : state_->order_by_relations(eye, found);
+    if (report) *report = found;
+    return state_->in_callers_numbers(places);
+}
+
+bool VisibilitySorter::State::is_delaunay() {
+    if (!delaunay) delaunay = convex && graph.flat_cells() == 0 && locally_delaunay(graph);
+    return *delaunay;
+}
+
+std::span<const CellId> VisibilitySorter::State::order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible) {
+    find_centroid_keys(graph, eye, visible, key_sort.keys(graph.size()));
+    return key_sort.sort();
+}
+
+std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible,
+                                                                 OrderReport& report) {
+    if (!powers) powers.emplace(graph);
+    powers->find(graph, eye, visible, key_sort.keys(graph.size()));
+    const auto places = key_sort.sort();
+    if (!is_delaunay()) return places;
+    report.exact = powers->settle(graph, eye, places);
+    return report.exact ? places : order_by_relations(eye, report);
+}
+
+// In a mesh that fills a convex body any topological order will do. Elsewhere, and in cycles, depth has to help.
+std::span<const CellId> VisibilitySorter::State::order_by_relations(const Eye& eye, OrderReport& report) {
+    report.method = OrderMethod::mpvo;
+    if (convex) {
+        const auto places = topological.run(graph, eye);
+        report.exact = places.size() == graph.size();
+        if (report.exact) return places;
     }
-    drain();
-
-    std::size_t unordered = 0;
-    if (order_.size() < cells) {
-        std::vector<CellId> blocked;
-        for (CellId cell = 0; cell < cells; ++cell) {
-            if (behind_[cell] != 0) blocked.push_back(cell);
-        }
-        std::stable_sort(blocked.begin(), blocked.end(), [&](CellId a, CellId b) { return depth_[a] > depth_[b]; });
-        for (const CellId cell : blocked) {
-            if (behind_[cell] == 0) continue;  // became free meanwhile
-            ++unordered;
-            behind_[cell] = 0;
-            free_.push(cell, depth_[cell]);
-            drain();
-        }
-    }
-    if (report) report->unordered = unordered;
-    return order_;
+    return topological.run_by_depth(graph, eye, report.unordered);
 }
 
-void VisibilitySorter::find_relations(const Eye& eye) {
-    const std::size_t cells = mesh_.tets.size();
-    in_front_.resize(cells);
-    behind_.resize(cells);
-    depth_.resize(cells);
-    const DepthScale scale(bounds(mesh_.points), eye);
-    const auto relate = [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t c = range.begin(); c != range.end(); ++c) {
-            const auto cell = static_cast<CellId>(c);
-            std::uint8_t in_front = 0, behind = 0;
-            for (int face = 0; face < 4; ++face) {
-                if (adjacency_.neighbours[c][static_cast<std::size_t>(face)] == no_cell) continue;
-                const int beyond = beyond_face(mesh_, cell, face, eye);
-                if (beyond > 0) in_front |= static_cast<std::uint8_t>(1U << face);
-                if (beyond < 0) ++behind;
-            }
-            in_front_[c] = in_front;
-            behind_[c] = behind;
-            depth_[c] = scale(distance(eye, centroid(mesh_, cell)));
-        }
-    };
-    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, cells, 4096), relate);
+ViewOrder VisibilitySorter::State::in_callers_numbers(std::span<const CellId> places) {
+    items.resize(places.size());
+    oneapi::tbb::parallel_for(Range(0, places.size(), cells_per_task), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) items[i] = graph.cell(places[i]);
+    });
+    return {items, {}};
 }
 
-// Puts the free cells into the order, farthest first, each of them freeing those that it was hidden by.
-void VisibilitySorter::drain() {
-    while (!free_.empty()) {
-        const CellId cell = free_.pop_deepest();
-        order_.push_back(cell);
-        for (unsigned faces = in_front_[cell]; faces != 0; faces &= faces - 1) {
-            release(adjacency_.neighbours[cell][static_cast<std::size_t>(std::countr_zero(faces))]);
-        }
-    }
-}
-
-void VisibilitySorter::release(CellId cell) {
-    if (behind_[cell] == 0) return;  // already taken, to get out of a cycle
-    if (--behind_[cell] == 0) free_.push(cell, depth_[cell]);
+std::size_t VisibilitySorter::count_violations(const ViewOrder& order, const Eye& eye) const {
+    const CellGraph& graph = state_->graph;
+    const auto position = positions(order, graph.size());
+    return count_faces(graph.size(), [&](CellId place, int face) {
+        const CellId other = graph.neighbours(place)[static_cast<std::size_t>(face)];
+        if (other == graph.nobody() || other < place) return false;
+        return wrong_way_round(position[graph.cell(place)], position[graph.cell(other)], graph.beyond(eye, place, face));
+    });
 }
 
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report) {
     VisibilitySorter sorter(mesh);
-    const auto order = sorter.order(eye, report);
-    return {order.begin(), order.end()};
+    const ViewOrder order = sorter.order(eye, report);
+    return {order.items.begin(), order.items.end()};
 }
 
-std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, std::span<const CellId> order,
-                                   const Eye& eye) {
-    assert(order.size() == mesh.tets.size());
-    std::vector<std::size_t> position(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i) position[order[i]] = i;
-    std::size_t violations = 0;
-    for (CellId cell = 0; cell < mesh.tets.size(); ++cell) {
-        for (int face = 0; face < 4; ++face) {
-            const CellId other = adjacency.neighbours[cell][static_cast<std::size_t>(face)];
-            if (other == no_cell || other < cell) continue;
-            const int beyond = beyond_face(mesh, cell, face, eye);
-            // The neighbour on the eye's side must come later.
-            if ((beyond > 0 && position[other] < position[cell]) || (beyond < 0 && position[other] > position[cell])) {
-                ++violations;
-            }
-        }
-    }
-    return violations;
+std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye) {
+    const auto position = positions(order, mesh.tets.size());
+    return count_faces(mesh.tets.size(), [&](CellId cell, int face) {
+        const CellId other = adjacency.neighbours[cell][static_cast<std::size_t>(face)];
+        if (other == no_cell || other < cell) return false;
+        const auto v = face_vertices(mesh.tets[cell], face);
+        const int beyond = side_of_plane(eye, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+        return wrong_way_round(position[cell], position[other], beyond);
+    });
 }
 
 }  // namespace cellproj

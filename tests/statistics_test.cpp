@@ -20,13 +20,16 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
     run.peak_memory_bytes = 123456789012;
     Statistics picture;
     picture.ms = {.plan = 1, .sort = 2, .project = 3, .draw = 4, .read_back = 5, .total = 6, .write = 7};
-    picture.counts = {.cells = 11, .culled = 12, .drawn = 13, .triangles = 14, .unordered = 15, .order_violations = 16};
+    picture.counts = {.cells = 11, .culled = 12, .drawn = 13, .triangles = 14, .fragments = 22, .unordered = 15, .cycles = 17,
+                      .split_cells = 18, .order_violations = 16};
     picture.method = "preint3d:64";
     picture.target = "rgba16f";
     picture.table_bytes = 4194304;
     picture.backend = "gl_osmesa";
     picture.backend_version = "4.5 (Core Profile)";
     picture.order = "mpvo";
+    picture.order_exact = true;
+    picture.order_check = {.rays = 19, .wrong_rays = 20, .wrong_pairs = 21};
     picture.error = 0.25;
     run.pictures = {picture};
 
@@ -34,10 +37,12 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
         "once": {"ms": {"read": 1.5, "tetrahedralize": 2.5, "prepare": 3.5}},
         "pictures": [{
             "ms": {"plan": 1.0, "sort": 2.0, "project": 3.0, "draw": 4.0, "read_back": 5.0, "total": 6.0, "write": 7.0},
-            "counts": {"cells": 11, "culled": 12, "drawn": 13, "triangles": 14, "unordered": 15, "order_violations": 16},
+            "counts": {"cells": 11, "culled": 12, "drawn": 13, "triangles": 14, "fragments": 22, "unordered": 15, "cycles": 17, "split_cells": 18,
+                       "order_violations": 16},
             "method": "preint3d:64", "target": "rgba16f", "table_bytes": 4194304,
             "backend": "gl_osmesa", "backend_version": "4.5 (Core Profile)",
-            "order": "mpvo", "error": 0.25}],
+            "order": "mpvo", "order_exact": true, "order_check": {"rays": 19, "wrong_rays": 20, "wrong_pairs": 21},
+            "error": 0.25}],
         "peak_memory_bytes": 123456789012})json";
     EXPECT_EQ(Json::parse(to_json(run)), Json::parse(expected)) << to_json(run);
 }
@@ -64,13 +69,18 @@ TEST(Statistics, KeysStandInTheOrderOfTheDesign) {
                             "culled",
                             "drawn",
                             "triangles",
+                            "fragments",
                             "unordered",
+                            "cycles",
+                            "split_cells",
                             "order_violations",
                             "method",
                             "target",
                             "backend",
                             "backend_version",
                             "order",
+                            "order_exact",
+                            "order_check",
                             "error",
                             "peak_memory_bytes"}) {
         const std::size_t place = text.find('"' + std::string(key) + "\":");

@@ -101,7 +101,7 @@ TEST_P(DelaunayOrder, HasNoViolationFromAnyEye) {
         const auto order = sorter.order(eye, &report);
         ASSERT_EQ(report.unordered, 0U) << "eye " << i;
         ASSERT_EQ(count_order_violations(mesh, sorter.adjacency(), order, eye), 0U) << "eye " << i;
-        if (i < 4) expect_permutation(order, mesh.tets.size());
+        if (i < 4) expect_permutation(order.items, mesh.tets.size());
     }
 }
 
@@ -114,7 +114,7 @@ TEST(VisibilitySorter, MeetsTheCellsInTheOrderOfTheRay) {
     std::mt19937_64 random(22);
     for (int i = 0; i < 20; ++i) {
         const Eye eye = random_eye(random, i);
-        EXPECT_EQ(wrong_along_rays(mesh, sorter.order(eye), eye, 50, random), 0U) << "eye " << i;
+        EXPECT_EQ(wrong_along_rays(mesh, sorter.order(eye).items, eye, 50, random), 0U) << "eye " << i;
     }
 }
 
@@ -124,10 +124,10 @@ TEST(VisibilitySorter, TheJudgesCatchAReversedOrder) {
     VisibilitySorter sorter(mesh);
     const Eye eye = Eye::at({3, 2, 1});
     auto order = order_cells(mesh, eye);
-    EXPECT_EQ(count_order_violations(mesh, sorter.adjacency(), order, eye), 0U);
+    EXPECT_EQ(count_order_violations(mesh, sorter.adjacency(), {order, {}}, eye), 0U);
     std::reverse(order.begin(), order.end());
     std::mt19937_64 random(23);
-    EXPECT_GT(count_order_violations(mesh, sorter.adjacency(), order, eye), 500U);
+    EXPECT_GT(count_order_violations(mesh, sorter.adjacency(), {order, {}}, eye), 500U);
     EXPECT_GT(wrong_along_rays(mesh, order, eye, 20, random), 20U);
 }
 
@@ -150,7 +150,7 @@ TEST(VisibilitySorter, EyesInThePlanesOfFaces) {
                            Eye::at({0, 0, 0}), Eye::at({1.0 / 6, 1.0 / 6, 0.25}), Eye::at({2, 0.5, 0.5})}) {
         OrderReport report;
         const auto order = sorter.order(eye, &report);
-        expect_permutation(order, mesh.tets.size());
+        expect_permutation(order.items, mesh.tets.size());
         EXPECT_EQ(report.unordered, 0U);
         EXPECT_EQ(count_order_violations(mesh, sorter.adjacency(), order, eye), 0U);
     }
@@ -217,7 +217,7 @@ TEST(VisibilitySorter, ACycleIsLeftByDepthAndCounted) {
     VisibilitySorter sorter(mesh);
     OrderReport report;
     const auto order = sorter.order(above, &report);
-    expect_permutation(order, mesh.tets.size());
+    expect_permutation(order.items, mesh.tets.size());
     EXPECT_GE(report.unordered, 1U);
     EXPECT_GE(count_order_violations(mesh, sorter.adjacency(), order, above), 1U);  // no order can respect a cycle
     EXPECT_LE(count_order_violations(mesh, sorter.adjacency(), order, above), report.unordered * 4);
@@ -234,7 +234,7 @@ TEST(VisibilitySorter, FlatNeedleAndPointCellsDoNotStallIt) {
         mesh.tets.push_back(i % 3 == 0 ? std::array{a, a, a, a} : i % 3 == 1 ? std::array{a, b, a, b} : std::array{a, b, c, c});
     }
     VisibilitySorter sorter(mesh);
-    for (int i = 0; i < 10; ++i) expect_permutation(sorter.order(random_eye(random, i)), mesh.tets.size());
+    for (int i = 0; i < 10; ++i) expect_permutation(sorter.order(random_eye(random, i)).items, mesh.tets.size());
 }
 
 TEST(DepthQueue, GivesTheDeepestFirstAndTheLatestAmongEquals) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,11 +20,17 @@ namespace cellproj::cli {
 
 namespace {
 
+// Enough to meet a wrong order that shows, and done in about a second.
+constexpr std::size_t rays_of_proof = 4096;
+
 struct RenderOptions {
     SceneOptions scene;
     std::filesystem::path output, stats;
-    std::string method = to_string(Method{}), target = to_string(Quality{}.target);
+    std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto";
+    bool verify_order = false;
     std::vector<double> background{1, 1, 1};
+    std::string backend = "auto";
+    int threads = 0;
     double orbit_degrees = 0;
     int frames = 1, bits = 8;
 };
@@ -42,6 +49,13 @@ std::vector<Camera> cameras_of_pictures(const RenderOptions& options, const Inpu
         turned.push_back(orbit(cameras.front(), options.orbit_degrees * i / options.frames));
     }
     return turned;
+}
+
+// Without a GPU the native backend is the faster one by far; what it does not draw, OpenGL does.
+Backend choose_backend(const RenderOptions& options, const Quality& quality) {
+    if (options.backend == "gl") return Backend::gl_osmesa;
+    if (options.backend == "cpu") return Backend::cpu;
+    return draws(Backend::cpu, quality) || quality.order_per_pixel ? Backend::cpu : Backend::gl_osmesa;
 }
 
 // picture.png → picture_007.png when there are several.
@@ -72,6 +86,12 @@ void warn(const Image& image, const Statistics& statistics, const std::filesyste
                      "the transfer function's range\n",
                      file.c_str(), statistics.counts.drawn, statistics.counts.cells);
     }
+    if (!statistics.order_exact) {
+        std::fprintf(stderr,
+                     "cellproj: warning: %s: the order of cells (%s) is not proven to be exact for this mesh and view: colours may be "
+                     "wrong where cells stand in the wrong order\n",
+                     file.c_str(), statistics.order.c_str());
+    }
     if (statistics.counts.unordered > 0) {
         std::fprintf(stderr,
                      "cellproj: warning: %s: %zu cells lie in visibility cycles and were ordered by depth only\n",
@@ -79,9 +99,19 @@ void warn(const Image& image, const Statistics& statistics, const std::filesyste
     }
 }
 
+// What --verify-order found.
+void print_proof(const Statistics& s) {
+    if (!s.order_check) return;
+    std::printf("order %s%s: %zu face relations violated; %zu of %zu rays meet cells in another order (%zu pairs)\n", s.order.c_str(),
+                s.order_exact ? ", exact" : "", s.counts.order_violations, s.order_check->wrong_rays, s.order_check->rays,
+                s.order_check->wrong_pairs);
+}
+
 void print_line(const std::filesystem::path& file, const Statistics& s) {
-    std::printf("%s: %zu of %zu cells, %zu triangles, %.0f ms (sort %.0f, project %.0f, draw %.0f)\n", file.c_str(),
-                s.counts.drawn, s.counts.cells, s.counts.triangles, s.ms.total, s.ms.sort, s.ms.project, s.ms.draw);
+    const bool by_triangles = s.counts.triangles > 0;
+    std::printf("%s: %zu of %zu cells, %zu %s, %.0f ms (sort %.0f, project %.0f, draw %.0f) by %s\n", file.c_str(), s.counts.drawn,
+                s.counts.cells, by_triangles ? s.counts.triangles : s.counts.fragments, by_triangles ? "triangles" : "fragments",
+                s.ms.total, s.ms.sort, s.ms.project, s.ms.draw, s.backend.c_str());
 }
 
 // The median over the pictures, without the first one, in which the driver compiles its shaders and tables are made.
@@ -101,7 +131,10 @@ void render_pictures(const RenderOptions& options) {
     // Everything that can be refused without reading the mesh comes first.
     const ImageSize size = require_possible(options.scene);
     const Quality quality{.method = parse_method(options.method, "--method"),
-                          .target = parse_target_format(options.target, "--target")};
+                          .target = parse_target_format(options.target, "--target"),
+                          .order = order_method(options.order),  // nothing: auto, pixel
+                          .order_per_pixel = options.order == "pixel",
+                          .check_rays = options.verify_order ? rays_of_proof : 0};
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -111,7 +144,7 @@ void render_pictures(const RenderOptions& options) {
     RunStatistics run;
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
-    const auto renderer = make_renderer(Backend::gl_osmesa);
+    const auto renderer = make_renderer(choose_backend(options, quality), {.threads = options.threads});
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
@@ -135,6 +168,7 @@ void render_pictures(const RenderOptions& options) {
         statistics.ms.write = writing.ms();
         warn(image, statistics, file);
         print_line(file, statistics);
+        print_proof(statistics);
         run.pictures.push_back(std::move(statistics));
     }
     print_median(run.pictures);
@@ -161,6 +195,17 @@ void add_render_command(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--target", options->target, "What cells are blended in: rgba8, rgba16, rgba16f or rgba32f")
         ->capture_default_str();
+    command->add_option("--backend", options->backend,
+                        "What draws: cpu (native), gl (OpenGL by OSMesa), or auto: cpu, and gl for methods and targets that only it has")
+        ->check(CLI::IsMember({"auto", "cpu", "gl"}))->capture_default_str();
+    command->add_option("--threads", options->threads, "Threads of the cpu backend; 0: all that the process may use")
+        ->check(CLI::Range(0, 1024))->capture_default_str();
+    command->add_option("--order", options->order,
+                        "How cells are sorted: auto (exact for this mesh), centroid, power, mpvo, bsp or sxmpvo (sort/README.md), "
+                        "or pixel: each pixel by itself, exact for any mesh (cpu backend)")
+        ->check(CLI::IsMember({"auto", "centroid", "power", "mpvo", "bsp", "sxmpvo", "pixel"}))->capture_default_str();
+    command->add_flag("--verify-order", options->verify_order,
+                      "Prove the order of every picture: relations of neighbours, and the sequence of cells along 4096 pixels' rays");
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
     command->callback([options] { render_pictures(*options); });
 }

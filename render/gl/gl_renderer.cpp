@@ -4,6 +4,7 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "classify/segment_method.hpp"
@@ -47,12 +48,14 @@ const char* blending_define(const Method& method) {
 
 // Projects chunks of the order into batches, each of which is drawn while the next one is projected.
 template <class Vertex, class Project>
-void draw(TriangleStream& stream, std::span<const CellId> order, Statistics& statistics, Project project) {
+void draw(TriangleStream& stream, const ViewOrder& order, Statistics& statistics, Project project) {
     Triangles<Vertex> batch;
-    for (std::size_t begin = 0; begin < order.size(); begin += cells_per_chunk) {
+    std::set<CellId> split_cells;
+    for (std::size_t begin = 0; begin < order.items.size(); begin += cells_per_chunk) {
         const Stopwatch projecting;
         batch.clear();
-        project(order.subspan(begin, std::min(cells_per_chunk, order.size() - begin)), batch);
+        const std::size_t count = std::min(cells_per_chunk, order.items.size() - begin);
+        project(ViewOrder{order.items.subspan(begin, count), order.pieces}, batch);
         statistics.ms.project += projecting.ms();
 
         const Stopwatch drawing;
@@ -60,7 +63,9 @@ void draw(TriangleStream& stream, std::span<const CellId> order, Statistics& sta
         statistics.ms.draw += drawing.ms();
         statistics.counts.drawn += batch.drawn_cells;
         statistics.counts.triangles += batch.indices.size() / 3;
+        split_cells.insert(batch.drawn_split_cells.begin(), batch.drawn_split_cells.end());
     }
+    statistics.counts.drawn += split_cells.size();
     const Stopwatch finish;
     glFinish();
     statistics.ms.draw += finish.ms();
@@ -127,7 +132,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 
     const Stopwatch sort;
     OrderReport order_report;
-    const auto order = prepared_->sorter().order(camera.viewpoint(), &order_report);
+    const ViewOrder order = prepared_->order(camera, size, quality.order, &order_report);
     statistics.ms.sort = sort.ms();
 
     const Stopwatch transform;
@@ -145,22 +150,19 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 
     statistics.counts.cells = scene.mesh->tets.size();
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
-    statistics.counts.unordered = order_report.unordered;
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
     statistics.table_bytes = shader_ ? shader_->table_bytes() : 0;
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
-    statistics.order = "mpvo";
     if (out) {  // the proof of the order is no part of the frame
-        statistics.counts.order_violations =
-            count_order_violations(*scene.mesh, prepared_->sorter().adjacency(), order, camera.viewpoint());
+        prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
         *out = std::move(statistics);
     }
     return image;
 }
 
-void GlRenderer::draw_segments(const CellStream& cells, std::span<const CellId> order, Statistics& statistics) {
+void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
     const bool perspective = cells.transform().perspective();
     const Program& segments =
         program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shader_->source(),
@@ -169,13 +171,13 @@ void GlRenderer::draw_segments(const CellStream& cells, std::span<const CellId> 
     shader_->bind(segments);
     segments.use();
     draw<StreamVertex>(segments_, order, statistics,
-                       [&](std::span<const CellId> chunk, TriangleBatch& batch) { cells.project(chunk, batch); });
+                       [&](const ViewOrder& chunk, TriangleBatch& batch) { cells.project(chunk, batch); });
 }
 
-void GlRenderer::draw_lit(const CellStream& cells, std::span<const CellId> order, Statistics& statistics) {
+void GlRenderer::draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
     program(shaders::lit_vert, shaders::lit_frag, blending_define(method_)).use();
     draw<LitVertex>(lit_, order, statistics,
-                    [&](std::span<const CellId> chunk, LitBatch& batch) { cells.project(chunk, *lighting_, batch); });
+                    [&](const ViewOrder& chunk, LitBatch& batch) { cells.project(chunk, *lighting_, batch); });
 }
 
 }  // namespace cellproj::gl

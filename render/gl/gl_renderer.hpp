@@ -7,7 +7,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "classify/vertex_light.hpp"
@@ -32,8 +31,8 @@ public:
 
 private:
     const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
-    void draw_segments(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
-    void draw_lit(const CellStream& cells, std::span<const CellId> order, Statistics& statistics);
+    void draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
+    void draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
 
     OsmesaContext context_;
     std::map<std::string, Program> programs_;  // by their text

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The cells of a mesh and who is beside whom, laid out for sorting: cells that are close in space are close in memory, and points are
+// float32. From it come the relations of one view: which of two face neighbours hides the other.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/predicates.hpp"
+#include "mesh/tet_mesh.hpp"
+
+namespace cellproj {
+
+// Cells have *places*, 0 .. #T−1: the caller's order where that is coherent, Morton order where it is not. Place #T is nobody's.
+// The mesh must outlive the graph and stay unchanged. Memory: 38 bytes per cell and 20 per point.
+class CellGraph {
+public:
+    // The adjacency must be of this mesh.
+    CellGraph(const TetMesh& mesh, const Adjacency& adjacency);
+
+    // What one view makes of the cell at a place: bit i is set when the neighbour across face i hides the cell; times 16, how many
+    // neighbours it hides.
+    using Relations = std::uint8_t;
+    static constexpr Relations one_hidden = 0x10, in_front = 0x0f;
+
+    // The relations of all places, exact: they are those of the float64 mesh and eye. `relations` has #T + 1 elements; the last one
+    // is set to 0. Runs on all cores.
+    void find_relations(const Eye& eye, std::span<Relations> relations) const;
+
+    const TetMesh& mesh() const { return mesh_; }
+    std::size_t size() const { return neighbours_.size(); }
+    CellId nobody() const { return static_cast<CellId>(size()); }
+    CellId cell(CellId place) const { return cells_[place]; }            // as the caller numbers it
+    const std::vector<CellId>& cells() const { return cells_; }
+    const std::array<CellId, 4>& neighbours(CellId place) const { return neighbours_[place]; }  // places; nobody() where there is none
+    const std::vector<std::array<CellId, 4>>& neighbours() const { return neighbours_; }
+    bool on_boundary(CellId place) const { return (faces_[place] >> 4) != 0x0f; }
+    // Faces whose two cells lie on the same side: the mesh overlaps itself there, and they tell no order.
+    std::size_t folded_faces() const { return folded_faces_; }
+    // Cells without volume.
+    std::size_t flat_cells() const { return flat_cells_; }
+
+    // An eye, or the direction to it, and a cell's centroid in the graph's own coordinates, in which points lie within ±1. A direction's
+    // largest coordinate is 1.
+    glm::dvec3 scaled(const Eye& eye) const;
+    glm::vec3 float_centroid(CellId place) const {
+        glm::vec3 sum(0.0F);
+        for (const std::uint32_t corner : corners_[place]) {
+            const Point& p = points_[corner];
+            sum += glm::vec3(p.x, p.y, p.z);
+        }
+        return 0.25F * sum;
+    }
+
+    // Where the eye lies with respect to face i: +1 on the neighbour's side, −1 on the cell's, 0 in its plane. Exact.
+    int beyond(const Eye& eye, CellId place, int face) const;
+    // The adjacency in the caller's numbers, without folded faces.
+    Adjacency adjacency() const;
+
+private:
+    struct Point {
+        float x, y, z;
+        VertexId vertex;
+    };
+    struct View;
+
+    void number_cells(const Adjacency& adjacency);
+    void number_points();
+    void find_sides();
+    Relations relations_at(const View& view, std::size_t place, unsigned positive, unsigned negative) const;
+    void relate(const View& view, std::size_t begin, std::size_t end, std::span<Relations> relations) const;
+
+    const TetMesh& mesh_;
+    glm::dvec3 center_{0.0};
+    double scale_ = 1.0;  // a power of two; points are (p − center)·scale, within ±1
+    std::vector<CellId> cells_;                         // #T: the cell at a place
+    std::vector<std::array<CellId, 4>> neighbours_;     // #T by 4: places
+    std::vector<std::array<std::uint32_t, 4>> corners_;  // #T by 4, into points_
+    std::vector<Point> points_;                         // by first use
+    // #T: bits 0–3: the cell lies on the outer side of its face i (it is inverted, or flat and its neighbour says so); bits 4–7: there
+    // is a neighbour.
+    std::vector<std::uint8_t> faces_;
+    std::size_t folded_faces_ = 0, flat_cells_ = 0;
+};
+
+}  // namespace cellproj

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sort/power_keys.hpp"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+#include "sort/depth_keys.hpp"
+#include "sort/order_repair.hpp"
+
+namespace cellproj {
+
+namespace {
+
+using Range = oneapi::tbb::blocked_range<std::size_t>;
+
+constexpr std::size_t cells_per_task = 4096;
+constexpr double half_ulp = 0x1p-53, half_ulp_float = 0x1p-24;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+// Nearness beyond this is that of flat cells at the boundary, whose centres may be anywhere.
+constexpr float nearness_limit = 8.0F;
+
+std::uint32_t key_of(float nearness) {
+    constexpr float scale = static_cast<float>(largest_key) / (2 * nearness_limit);
+    return static_cast<std::uint32_t>((std::clamp(nearness, -nearness_limit, nearness_limit) + nearness_limit) * scale);
+}
+
+double largest_coordinate(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+}  // namespace
+
+// The centre is a + n/(2D) with n = |u|²(v × w) + |v|²(w × u) + |w|²(u × v) and D = [u v w], u, v, w the edges from a. Edges of at most
+// L per coordinate are good to 2⁻⁵¹ (their ends lie within ±1 and are rounded twice); then n is good to 18 L³(4·2⁻⁵¹ + 20 L·2⁻⁵³) and D
+// to 6 L²(3·2⁻⁵¹ + 8 L·2⁻⁵³). Nearness is 2 e·c − (|c|² − r²) over max(1, |e|): off by 6 times the centre's error and that of the power.
+PowerKeys::PowerKeys(const CellGraph& graph) : spheres_(graph.size()), slack_(graph.size()) {
+    oneapi::tbb::parallel_for(Range(0, graph.size(), cells_per_task), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            const auto& t = graph.mesh().tets[graph.cell(static_cast<CellId>(i))];
+            const auto point = [&](int corner) {
+                return graph.scaled(Eye::at(graph.mesh().points[t[static_cast<std::size_t>(corner)]]));
+            };
+            const glm::dvec3 a = point(0), u = point(1) - a, v = point(2) - a, w = point(3) - a;
+            const glm::dvec3 vw = glm::cross(v, w), wu = glm::cross(w, u), uv = glm::cross(u, v);
+            const glm::dvec3 n = glm::dot(u, u) * vw + glm::dot(v, v) * wu + glm::dot(w, w) * uv;
+            const double d = glm::dot(uv, w);
+            const double l = std::max({largest_coordinate(u), largest_coordinate(v), largest_coordinate(w)});
+            const double n_error = 18 * l * l * l * (16 + 20 * l) * half_ulp, d_error = 6 * l * l * (12 + 8 * l) * half_ulp;
+            if (!(std::abs(d) > 2 * d_error)) {
+                spheres_[i] = {};
+                slack_[i] = infinity;
+                continue;
+            }
+            const glm::dvec3 from_a = n / (2 * d), center = a + from_a;
+            const double reach = largest_coordinate(from_a);
+            const double power = glm::dot(a, a) + 2 * glm::dot(a, from_a);
+            const double center_error = (n_error / 2 + reach * d_error) / (std::abs(d) - d_error) + 4 * half_ulp * (reach + 1);
+            const double power_error = 6 * center_error + 128 * half_ulp * (reach + 1);
+            spheres_[i] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z),
+                           static_cast<float>(power)};
+            const double rounding = half_ulp_float * (6 * largest_coordinate(center) + std::abs(power));
+            slack_[i] = static_cast<float>(1.001 * (6 * center_error + power_error + rounding));
+        }
+    });
+}
+
+void PowerKeys::find(const CellGraph& graph, const Eye& eye, std::span<const std::uint8_t> visible, std::span<std::uint32_t> keys) {
+    nearness_.resize(graph.size());
+    const glm::dvec3 e = graph.scaled(eye);
+    const double size = std::max(1.0, glm::length(e));
+    const glm::dvec3 towards = (eye.at_infinity ? 1.0 : 2.0) * (e / size);
+    const double own = eye.at_infinity ? 0.0 : 1.0 / size;
+    oneapi::tbb::parallel_for(Range(0, graph.size(), cells_per_task), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            const Sphere& s = spheres_[i];
+            const double nearness = towards.x * s.x + towards.y * s.y + towards.z * s.z - own * s.power;
+            nearness_[i] = static_cast<float>(nearness);
+            keys[i] = visible.empty() || visible[graph.cell(static_cast<CellId>(i))] != 0 ? key_of(nearness_[i]) : no_key;
+        }
+    });
+}
+
+// Whether the keys of two cells might stand in another order than their powers. The last term is the rounding of the nearness.
+bool PowerKeys::doubtful(std::size_t a, std::size_t b) const {
+    const float na = nearness_[a], nb = nearness_[b];
+    const float certain = slack_[a] + slack_[b] + 0x1.01p-24F * (std::abs(na) + std::abs(nb));
+    return !(std::abs(na - nb) > certain) || key_of(na) == key_of(nb);
+}
+
+bool PowerKeys::settle(const CellGraph& graph, const Eye& eye, std::span<CellId> order) {
+    struct Pair {
+        CellId place;
+        int face;
+    };
+    oneapi::tbb::enumerable_thread_specific<std::vector<Pair>> found;
+    oneapi::tbb::parallel_for(Range(0, graph.size(), cells_per_task), [&](const Range& range) {
+        std::vector<Pair>& pairs = found.local();
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            for (std::size_t face = 0; face < 4; ++face) {
+                const CellId other = graph.neighbours(static_cast<CellId>(i))[face];
+                if (other == graph.nobody() || other < i || !doubtful(i, other)) continue;
+                pairs.push_back({static_cast<CellId>(i), static_cast<int>(face)});
+            }
+        }
+    });
+    std::size_t doubts = 0;
+    for (const auto& pairs : found) doubts += pairs.size();
+    if (doubts == 0) return true;
+    if (doubts > graph.size() / 64 + 64) return false;
+
+    position_.assign(graph.size(), no_key);
+    for (std::uint32_t i = 0; i < order.size(); ++i) position_[order[i]] = i;
+    std::vector<OrderArc> wrong;
+    for (const auto& pairs : found) {
+        for (const auto& [place, face] : pairs) {
+            const CellId other = graph.neighbours(place)[static_cast<std::size_t>(face)];
+            if (position_[place] == no_key && position_[other] == no_key) continue;
+            const int beyond = graph.beyond(eye, place, face);
+            if (beyond == 0) continue;
+            if (position_[place] == no_key || position_[other] == no_key) return false;
+            const OrderArc arc = beyond > 0 ? OrderArc{place, other} : OrderArc{other, place};
+            if (position_[arc.front] < position_[arc.behind]) wrong.push_back(arc);
+        }
+    }
+    return repair_order(graph, eye, wrong, order, position_);
+}
+
+}  // namespace cellproj

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sort/topological_sort.hpp"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+namespace cellproj {
+
+namespace {
+
+using Relations = CellGraph::Relations;
+
+// The state of a cell in the order: more hidden cells than any other has, also after four of them have been counted down.
+constexpr Relations out = 0xf0;
+
+// Grows with the distance from the eye; for an eye at infinity up to a constant and a factor.
+double distance(const Eye& eye, const glm::dvec3& point) {
+    return eye.at_infinity ? -glm::dot(eye.xyz, point) : glm::distance(eye.xyz, point);
+}
+
+// The distances that a mesh can have from an eye, mapped onto the depths of a DepthQueue.
+class DepthScale {
+public:
+    DepthScale(const Bounds& box, const Eye& eye) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (int corner = 0; corner < 8; ++corner) {
+            const double d = distance(eye, {corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                            corner & 4 ? box.high.z : box.low.z});
+            low = std::min(low, d);
+            high = std::max(high, d);
+        }
+        // A face or the inside of the box can be nearer than every corner, but never by more than its diagonal.
+        if (!eye.at_infinity) low = std::max(0.0, std::min(low, high - box.diagonal()));
+        low_ = low;
+        scale_ = high > low ? (DepthQueue::depths - 1) / (high - low) : 0.0;
+    }
+
+    std::uint16_t operator()(double d) const {
+        return static_cast<std::uint16_t>(std::clamp((d - low_) * scale_, 0.0, DepthQueue::depths - 1.0));
+    }
+
+private:
+    double low_, scale_;
+};
+
+glm::dvec3 centroid(const TetMesh& mesh, CellId cell) {
+    const auto& t = mesh.tets[cell];
+    return 0.25 * (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]] + mesh.points[t[3]]);
+}
+
+}  // namespace
+
+// Arcs by the cell behind, and how many each cell in front still waits for.
+struct TopologicalSort::ArcHeads {
+    std::vector<OrderArc> arcs;
+    std::vector<CellId> fronts;           // ascending
+    std::vector<std::uint32_t> waiting;   // per front
+
+    explicit ArcHeads(std::span<const OrderArc> given) : arcs(given.begin(), given.end()) {
+        std::sort(arcs.begin(), arcs.end(),
+                  [](const OrderArc& a, const OrderArc& b) { return a.behind != b.behind ? a.behind < b.behind : a.front < b.front; });
+        fronts.reserve(arcs.size());
+        for (const OrderArc& arc : arcs) fronts.push_back(arc.front);
+        std::sort(fronts.begin(), fronts.end());
+        std::vector<CellId> all = fronts;
+        fronts.erase(std::unique(fronts.begin(), fronts.end()), fronts.end());
+        waiting.reserve(fronts.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (i == 0 || all[i] != all[i - 1]) waiting.push_back(0);
+            ++waiting.back();
+        }
+    }
+
+    // Calls free(front) for every cell that waited for this one last.
+    template <class Free>
+    void release(CellId behind, Free free) {
+        auto arc = std::lower_bound(arcs.begin(), arcs.end(), behind, [](const OrderArc& a, CellId cell) { return a.behind < cell; });
+        for (; arc != arcs.end() && arc->behind == behind; ++arc) {
+            const auto front = std::lower_bound(fronts.begin(), fronts.end(), arc->front) - fronts.begin();
+            if (--waiting[static_cast<std::size_t>(front)] == 0) free(arc->front);
+        }
+    }
+};
+
+// Each step is free of branches that depend on the data, which would be guessed wrong every other time: all four neighbours are
+// counted down by 0 or 1 and written to the stack, whose top moves on only if they became free. Nobody has a state, too.
+std::span<const CellId> TopologicalSort::run(const CellGraph& graph, const Eye& eye, std::span<const OrderArc> arcs) {
+    graph_ = &graph;
+    const std::size_t count = graph.size();
+    state_.resize(count + 1);
+    order_.resize(count + 1);
+    graph.find_relations(eye, state_);
+    state_[count] = out;
+    ArcHeads heads(arcs);
+    for (const CellId front : heads.fronts) state_[front] += CellGraph::one_hidden;  // all its arcs count as one
+
+    // Local copies: a store of a state, a byte, might otherwise change any of them for all that the compiler knows.
+    const std::array<CellId, 4>* const neighbours = graph.neighbours().data();
+    Relations* const state = state_.data();
+    CellId* const order = order_.data();
+    CellId* const bottom = order + count;
+    std::size_t done = 0;
+    const bool has_arcs = !heads.arcs.empty();
+    for (std::size_t first = 0; first < count; ++first) {
+        if (state[first] >= CellGraph::one_hidden) continue;
+        CellId* top = bottom;  // the stack grows downwards; its lowest element is at top + 1
+        *top-- = static_cast<CellId>(first);
+        while (top != bottom) {
+            const CellId cell = *++top;
+            const unsigned relations = state[cell];
+            state[cell] = out;
+            order[done++] = cell;
+            const std::array<CellId, 4> beside = neighbours[cell];
+            for (unsigned face = 0; face < 4; ++face) {
+                const CellId neighbour = beside[face];
+                const unsigned hidden = (relations >> face & 1U) << 4;
+                const unsigned left = state[neighbour] - hidden;
+                state[neighbour] = static_cast<Relations>(left);
+                __builtin_prefetch(neighbours + neighbour);  // it may come next
+                *top = neighbour;
+                top -= static_cast<std::ptrdiff_t>((hidden >> 4) & static_cast<unsigned>(left < CellGraph::one_hidden));
+            }
+            if (has_arcs && graph.on_boundary(cell)) {
+                heads.release(cell, [&](CellId front) {
+                    state[front] -= CellGraph::one_hidden;
+                    if (state[front] < CellGraph::one_hidden) *top-- = front;
+                });
+            }
+        }
+    }
+    done_ = done;
+    return {order, done};
+}
+
+std::vector<CellId> TopologicalSort::stalled() const {
+    std::vector<CellId> left;
+    for (std::size_t place = 0; place + 1 < state_.size(); ++place) {
+        if (state_[place] != out) left.push_back(static_cast<CellId>(place));
+    }
+    return left;
+}
+
+std::span<const CellId> TopologicalSort::run_by_depth(const CellGraph& graph, const Eye& eye, std::size_t& unordered) {
+    graph_ = &graph;
+    const std::size_t count = graph.size();
+    state_.resize(count + 1);
+    order_.resize(count + 1);
+    depth_.resize(count);
+    graph.find_relations(eye, state_);
+    const DepthScale scale(bounds(graph.mesh().points), eye);
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    oneapi::tbb::parallel_for(Range(0, count, 4096), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            depth_[i] = scale(distance(eye, centroid(graph.mesh(), graph.cell(static_cast<CellId>(i)))));
+        }
+    });
+
+    queue_.reset(count);
+    done_ = 0;
+    const auto drain = [&] {
+        while (!queue_.empty()) {
+            const CellId cell = queue_.pop_deepest();
+            const unsigned relations = state_[cell];
+            state_[cell] = out;
+            order_[done_++] = cell;
+            for (unsigned faces = relations & CellGraph::in_front; faces != 0; faces &= faces - 1) {
+                const CellId front = graph.neighbours(cell)[static_cast<std::size_t>(std::countr_zero(faces))];
+                // Already taken, to get out of a cycle?
+                if (state_[front] == out || state_[front] < CellGraph::one_hidden) continue;
+                state_[front] -= CellGraph::one_hidden;
+                if (state_[front] < CellGraph::one_hidden) queue_.push(front, depth_[front]);
+            }
+        }
+    };
+    for (CellId place = 0; place < count; ++place) {
+        if (state_[place] < CellGraph::one_hidden) queue_.push(place, depth_[place]);
+    }
+    drain();
+
+    unordered = 0;
+    if (done_ < count) {
+        std::vector<CellId> blocked = stalled();
+        std::stable_sort(blocked.begin(), blocked.end(), [&](CellId a, CellId b) { return depth_[a] > depth_[b]; });
+        for (const CellId cell : blocked) {
+            if (state_[cell] == out) continue;  // became free meanwhile
+            ++unordered;
+            state_[cell] &= CellGraph::in_front;
+            queue_.push(cell, depth_[cell]);
+            drain();
+        }
+    }
+    return {order_.data(), done_};
+}
+
+}  // namespace cellproj
