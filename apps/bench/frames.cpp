@@ -24,13 +24,13 @@ constexpr const char* description =
     "Draws scenes by cellproj's backends and, where it was built with them, by VTK's mappers, in turn, a new view\n"
     "each frame, each in a process of its own, and prints what a frame costs and how wrong it is.\n"
     "\n"
-    "  cellproj_frames                                   0.2M tetrahedra, about a minute\n"
-    "  cellproj_frames --all --csv all.csv               everything the README tells\n"
+    "  cellproj_frames                                   0.2M tetrahedra: a minute, five with VTK\n"
+    "  cellproj_frames --all --csv all.csv               everything the README tells: an hour or two with VTK\n"
     "  cellproj_frames --contenders cpu --threads 1,2    how it scales\n"
     "\n"
     "Columns: set_up_ms what is done before a view is known; first_ms from nothing to the first picture, set-up\n"
     "included; frame_ms a later frame (median, wall clock); user_ms CPU time of all threads for it (median);\n"
-    "bytes_per_tet the peak of memory beside the mesh; rms, max the error of R, G and B in the first view.";
+    "peak_mb, bytes_per_tet the peak of memory beside the mesh; rms, max the error of R, G and B in the first view.";
 
 void write_file(const std::string& file, const std::string& text) {
     if (file.empty()) return;
@@ -71,7 +71,11 @@ int main(int argc, char** argv) {
     app.add_option("--pictures", options.pictures, "an existing folder for the first views, over black")->check(CLI::ExistingDirectory);
     for (CLI::Option* option : app.get_options())
         if (option->get_items_expected_max() > 1) option->delimiter(',');
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
 
     try {
         if (all && scenes->empty()) options.scenes = {"grid:33", "delaunay:31000", "bluntfin", "grid:65", "grid:101"};

@@ -57,6 +57,7 @@ std::vector<Column> columns(const std::vector<Row>& rows, bool brief) {
             real("fragments", count, &Row::fragments),
             {"pixels_per_tet", false,
              [](const Row& row) { return number("%.1f", row.fragments / static_cast<double>(row.cells)); }},
+            {"peak_mb", false, [](const Row& row) { return number("%.0f", row.peak_bytes / 1e6); }},
             {"bytes_per_tet", false,
              [](const Row& row) { return number("%.0f", row.peak_bytes / static_cast<double>(row.cells)); }},
             real("rms", error, &Row::rms),

@@ -187,11 +187,9 @@ struct Player {
 std::vector<PixelTruth> truth(const Reference& judge, const Camera& camera, ImageSize size, const std::vector<PixelId>& pixels,
                               glm::dvec2 shift) {
     if (shift == glm::dvec2(0)) return judge.pixels(camera, size, pixels);
-    const ScreenTransform transform(camera, size);
     std::vector<PixelTruth> truths;
     for (const PixelId& pixel : pixels) {
-        const auto ray = transform.ray(glm::dvec2(pixel.x + 0.5, pixel.y + 0.5) + shift);
-        const Light light = judge.light({ray.origin, ray.direction, camera.projection == Projection::perspective ? 0 : -std::numeric_limits<double>::infinity()});
+        const Light light = judge.light(judge.index().ray(camera, size, glm::dvec2(pixel.x + 0.5, pixel.y + 0.5) + shift));
         truths.push_back({pixel, light, light, light});
     }
     return truths;

@@ -20,7 +20,7 @@ struct RunOptions {
     std::vector<int> sizes;    // pixels along an edge
     std::vector<int> threads;  // 0: all CPUs
     Method method;             // of ours
-    int frames = 7;            // behind the first, a new view each; ≥ 1
+    int frames = 5;            // behind the first, a new view each; ≥ 1
     int judged = 2000;         // pixels of the first view; 0: none
     std::filesystem::path pictures;  // a folder for the first views as PNG; empty: none
 };

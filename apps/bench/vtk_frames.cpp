@@ -145,6 +145,12 @@ public:
         return image;
     }
 
+    // The ray casters look through the lower left corner of a pixel, found by comparing their pictures with the reference at shifted
+    // places: RMS of vtk-linear, grid:17, ramp, 256²: .0061 at the centres, .0032 at these corners, .006 and more at the others.
+    glm::dvec2 ray_shift() const override {
+        return name_ == "vtk-linear" || name_ == "vtk-preintegration" ? glm::dvec2(-0.5, 0.5) : glm::dvec2(0);
+    }
+
 private:
     std::string name_;
     ImageSize size_;
