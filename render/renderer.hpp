@@ -54,8 +54,10 @@ struct RendererOptions {
     int threads = 0;                                // of the CPU backend, ≥ 0; 0: all that the process may use
 };
 
-// Whether a backend draws pictures of this quality; those of other qualities are refused with Error (option).
+// Whether a backend draws pictures of this quality.
 bool draws(Backend backend, const Quality& quality);
+// Throws Error (option), which says what to do instead, when it does not; so do renderers.
+void require_drawn(Backend backend, const Quality& quality);
 
 // Throws Error (environment) when the backend is not available here; the message names the package to install.
 std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options = {});

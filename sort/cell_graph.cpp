@@ -120,9 +120,9 @@ CellGraph::CellGraph(const TetMesh& mesh, const Adjacency& adjacency) : mesh_(me
 
 void CellGraph::number_cells(const Adjacency& adjacency) {
     const std::size_t count = mesh_.tets.size();
-    const bool keep = coherent(adjacency);
+    keeps_order_ = coherent(adjacency);
     std::vector<CellId> place;
-    if (keep) {
+    if (keeps_order_) {
         cells_.resize(count);
         for (std::size_t i = 0; i < count; ++i) cells_[i] = static_cast<CellId>(i);
     } else {
@@ -137,7 +137,7 @@ void CellGraph::number_cells(const Adjacency& adjacency) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             for (std::size_t face = 0; face < 4; ++face) {
                 const CellId other = adjacency.neighbours[cells_[i]][face];
-                neighbours_[i][face] = other == no_cell ? static_cast<CellId>(count) : keep ? other : place[other];
+                neighbours_[i][face] = other == no_cell ? static_cast<CellId>(count) : keeps_order_ ? other : place[other];
             }
         }
     });

@@ -37,7 +37,7 @@ public:
     std::size_t size() const { return neighbours_.size(); }
     CellId nobody() const { return static_cast<CellId>(size()); }
     CellId cell(CellId place) const { return cells_[place]; }            // as the caller numbers it
-    const std::vector<CellId>& cells() const { return cells_; }
+    bool keeps_order() const { return keeps_order_; }                    // of the caller: places are his numbers
     const std::array<CellId, 4>& neighbours(CellId place) const { return neighbours_[place]; }  // places; nobody() where there is none
     const std::vector<std::array<CellId, 4>>& neighbours() const { return neighbours_; }
     bool on_boundary(CellId place) const { return (faces_[place] >> 4) != 0x0f; }
@@ -79,6 +79,7 @@ private:
     const TetMesh& mesh_;
     glm::dvec3 center_{0.0};
     double scale_ = 1.0;  // a power of two; points are (p − center)·scale, within ±1
+    bool keeps_order_ = false;
     std::vector<CellId> cells_;                         // #T: the cell at a place
     std::vector<std::array<CellId, 4>> neighbours_;     // #T by 4: places
     std::vector<std::array<std::uint32_t, 4>> corners_;  // #T by 4, into points_

@@ -5,9 +5,12 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <cassert>
 #include <functional>
 #include <limits>
+
+#include <glm/geometric.hpp>
 
 #include "sort/cell_graph.hpp"
 #include "sort/depth_keys.hpp"
@@ -59,17 +62,20 @@ struct VisibilitySorter::State {
     KeySort key_sort;
     std::optional<bool> delaunay;   // once it was asked for
     std::optional<PowerKeys> powers;  // likewise
+    std::optional<Eye> last_eye;      // of the order that `topological` holds, if it is whole
     std::vector<std::uint32_t> items;
 
     bool is_delaunay();
     std::span<const CellId> order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible);
     std::span<const CellId> order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible, OrderReport& report);
     std::span<const CellId> order_by_relations(const Eye& eye, OrderReport& report);
+    std::span<const CellId> order_of_convex(const Eye& eye);
+    bool close_to_last(const Eye& eye) const;
     ViewOrder in_callers_numbers(std::span<const CellId> places);
 };
 
 VisibilitySorter::VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency)
-    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .items = {}})) {
+    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .last_eye = {}, .items = {}})) {
     state_->convex = fills_convex_body(state_->graph);
 }
 
@@ -85,7 +91,7 @@ ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::opti
                                   const PixelGrid* /*pixels*/, std::span<const std::uint8_t> visible) {
     assert(visible.empty() || visible.size() == state_->graph.size());
     OrderReport found;
-    found.method = method.value_or(state_->is_delaunay() ? OrderMethod::power : OrderMethod::mpvo);
+    found.method = method.value_or(OrderMethod::mpvo);
     const auto places = found.method == OrderMethod::centroid ? state_->order_by_centroids(eye, visible)
                         : found.method == OrderMethod::power  ? state_->order_by_powers(eye, visible, found)
                                                               : state_->order_by_relations(eye, found);
@@ -107,24 +113,45 @@ std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye,
                                                                  OrderReport& report) {
     if (!powers) powers.emplace(graph);
     powers->find(graph, eye, visible, key_sort.keys(graph.size()));
-    const auto places = key_sort.sort();
+    auto places = key_sort.sort();
     if (!is_delaunay()) return places;
     report.exact = powers->settle(graph, eye, places);
-    return report.exact ? places : order_by_relations(eye, report);
+    if (report.exact) return places;
+    if (visible.empty()) return order_by_relations(eye, report);
+    // A relation in doubt leads through a cell that was left out: with all cells.
+    const auto all = order_by_powers(eye, {}, report);
+    if (report.method != OrderMethod::power) return all;
+    places = key_sort.sorted();
+    const auto last = std::remove_if(places.begin(), places.end(), [&](CellId place) { return visible[graph.cell(place)] == 0; });
+    return all.first(static_cast<std::size_t>(last - places.begin()));
 }
 
 // In a mesh that fills a convex body any topological order will do. Elsewhere, and in cycles, depth has to help.
 std::span<const CellId> VisibilitySorter::State::order_by_relations(const Eye& eye, OrderReport& report) {
     report.method = OrderMethod::mpvo;
     if (convex) {
-        const auto places = topological.run(graph, eye);
+        const auto places = order_of_convex(eye);
         report.exact = places.size() == graph.size();
+        last_eye = report.exact ? std::optional(eye) : std::nullopt;
         if (report.exact) return places;
     }
+    last_eye.reset();
     return topological.run_by_depth(graph, eye, report.unordered);
 }
 
+std::span<const CellId> VisibilitySorter::State::order_of_convex(const Eye& eye) {
+    return last_eye && close_to_last(eye) ? topological.run_again(graph, eye) : topological.run(graph, eye);
+}
+
+// Within a few degrees around the mesh: beyond 10 the last order is no help (sort/README.md).
+bool VisibilitySorter::State::close_to_last(const Eye& eye) const {
+    if (eye.at_infinity != last_eye->at_infinity) return false;
+    const glm::dvec3 now = graph.scaled(eye), then = graph.scaled(*last_eye);
+    return glm::distance(now, then) < 0.1 * std::max(1.0, glm::length(now));
+}
+
 ViewOrder VisibilitySorter::State::in_callers_numbers(std::span<const CellId> places) {
+    if (graph.keeps_order()) return {places, {}};
     items.resize(places.size());
     oneapi::tbb::parallel_for(Range(0, places.size(), cells_per_task), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) items[i] = graph.cell(places[i]);

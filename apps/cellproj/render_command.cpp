@@ -135,6 +135,8 @@ void render_pictures(const RenderOptions& options) {
                           .order = order_method(options.order),  // nothing: auto, pixel
                           .order_per_pixel = options.order == "pixel",
                           .check_rays = options.verify_order ? rays_of_proof : 0};
+    const Backend backend = choose_backend(options, quality);
+    require_drawn(backend, quality);
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -144,7 +146,7 @@ void render_pictures(const RenderOptions& options) {
     RunStatistics run;
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
-    const auto renderer = make_renderer(choose_backend(options, quality), {.threads = options.threads});
+    const auto renderer = make_renderer(backend, {.threads = options.threads});
     const Stopwatch preparing;
     {
         const Progress progress("preparing");

@@ -8,7 +8,7 @@
 //
 // Numerics. A cell's corners are taken in the order of their numbers, so that both cells of a face compute its slopes from the
 // same numbers in the same order: bit for bit the same. The cross products have the error of one rounding (Kahan). An edge-on
-// face has slopes without bounds; they are cut off at a size where the plane is still vertical to a millionth of a pixel.
+// face has slopes without bounds; they are cut off at a size where the plane is still vertical to a billionth of a pixel.
 // Then the side on which the cell lies does not depend on the rounded sign of the face's area: towards the eye the plane
 // lies infinitely far or near for the two sides of its line, whichever of both it counts as. All nearness is relative to the
 // cell's first corner: a thin cell far away keeps its thickness.
@@ -142,8 +142,9 @@ HWY_INLINE void make_planes(D d, const ScreenCells& cells, const std::uint32_t* 
     for (std::size_t k = 0; k < 4; ++k) {
         const Vec3<V>& n = normal[k];
         const Vec3<V>& anchor = p[face[k][0]];
-        // The smallest area that leaves the products below finite.
-        const V area = hn::Max(hn::Abs(n.n), hn::Set(d, 1e-18F));
+        // No slope beyond 1e20: then all products below are finite.
+        const V least = hn::MulAdd(hn::Add(hn::Abs(n.x), hn::Abs(n.y)), hn::Set(d, 1e-20F), hn::Set(d, 1e-30F));
+        const V area = hn::Max(hn::Abs(n.n), least);
         const auto sign = hn::And(hn::BitCast(du, n.n), hn::Set(du, 0x80000000U));
         const V inverse = hn::Div(hn::Set(d, -1.0F), hn::BitCast(d, hn::Or(hn::BitCast(du, area), sign)));
         const V slope_x = hn::Mul(n.x, inverse), slope_y = hn::Mul(n.y, inverse);

@@ -16,7 +16,6 @@
 
 #include "classify/piece_table.hpp"
 #include "classify/segment_method.hpp"
-#include "mesh/error.hpp"
 #include "render/cpu/kernels.hpp"
 #include "render/cpu/screen_mesh.hpp"
 #include "render/cpu/tile_bins.hpp"
@@ -31,17 +30,6 @@ constexpr double longest_segment = 2.0;
 
 // What may shine through before a pixel counts as opaque. Twenty times below a step of 8 bits where colours are at most 1.
 constexpr double hidden_share = 1e-4;
-
-void require_drawable(const Quality& quality) {
-    if (light_at_vertices(quality.method)) {
-        throw Error({ErrorKind::option, "method", "light for each pixel, which is all that the CPU backend draws",
-                     to_string(quality.method), "use the OpenGL backend (--backend gl), or the method integral"});
-    }
-    if (quality.target != TargetFormat::rgba32f) {
-        throw Error({ErrorKind::option, "target", "rgba32f, which is all that the CPU backend draws in", to_string(quality.target),
-                     "use the OpenGL backend (--backend gl)"});
-    }
-}
 
 // A method as the kernels want it.
 class Classification {
@@ -87,7 +75,7 @@ public:
     explicit CpuRenderer(int threads) : arena_(threads > 0 ? threads : oneapi::tbb::task_arena::automatic) {}
 
     void prepare(const Scene& scene, const Quality& quality) override {
-        require_drawable(quality);
+        require_drawn(Backend::cpu, quality);
         arena_.execute([&] { prepare_here(scene, quality); });
     }
 
@@ -95,7 +83,7 @@ public:
                  Statistics* statistics) override {
         validate(camera, "camera");
         validate(size, "size");
-        require_drawable(quality);
+        require_drawn(Backend::cpu, quality);
         return arena_.execute([&] { return render_here(scene, camera, size, quality, statistics); });
     }
 

@@ -4,7 +4,7 @@
 namespace cellproj::cpu {
 
 PieceArrays::PieceArrays(const Method& method, const PieceTable& table, const WalkLimits& walk)
-    : density(table.model == OpticalModel::density), limits(walk), two_point_depth(method.kind == MethodKind::integral ? 0.125F : 0.0F),
+    : density(table.model == OpticalModel::density), limits(walk), three_point_depth(method.kind == MethodKind::integral ? 0.125F : 0.0F),
       bin_count(static_cast<float>(table.bin_count())) {
     for (std::size_t i = 0; i < table.piece_count(); ++i) {
         const float* texels = &table.pieces[4 * PieceTable::texels_per_piece * i];

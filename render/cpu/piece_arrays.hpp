@@ -15,7 +15,7 @@ struct PieceArrays {
 
     bool density;
     WalkLimits limits;
-    float two_point_depth;  // up to which optical depth two points of a Gauss rule serve a part
+    float three_point_depth;  // up to which optical depth three points of a Gauss rule serve a part
     float bin_count;
     // Of each piece (classify/piece_table.hpp): scalar at its begin and its end, 1/width, τ and colour at both.
     std::vector<float> begin, end, inverse_width;

@@ -25,7 +25,7 @@ ScreenTransform relative_transform(const Camera& camera, ImageSize size, double 
 }
 
 // Products of such coordinates stay finite in float32; no pixel lies beyond.
-float screen_coordinate(double pixels) { return static_cast<float>(std::clamp(pixels, -1e8, 1e8)); }
+float screen_coordinate(double pixels) { return static_cast<float>(std::clamp(pixels, -1e12, 1e12)); }
 
 }  // namespace
 
