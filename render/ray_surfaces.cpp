@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cellproj {
 
@@ -25,13 +26,16 @@ double interpolate(const std::array<double, 4>& values, const std::array<double,
     return std::clamp(products[0] + products[1] + products[2] + products[3], low, high);
 }
 
-// The one segment that ends where this one begins, if no other begins or ends there.
-const RaySegment* before(std::size_t i, std::span<const RaySegment> segments, std::span<const RaySegment* const> by_leave) {
-    const double place = segments[i].enter;
-    if (i > 0 && segments[i - 1].enter == place) return nullptr;
-    if (i + 1 < segments.size() && segments[i + 1].enter == place) return nullptr;
-    const auto found = std::ranges::equal_range(by_leave, place, {}, [](const RaySegment* s) { return s->leave; });
-    return found.size() == 1 ? found.front() : nullptr;
+double middle(const RaySegment& segment) { return 0.5 * (segment.enter + segment.leave); }
+
+// The segments that count, in the ray's order.
+std::vector<const RaySegment*> in_order(std::span<const RaySegment> segments, double rounding) {
+    std::vector<const RaySegment*> result;
+    for (const RaySegment& segment : segments) {
+        if (segment.leave - segment.enter > rounding) result.push_back(&segment);
+    }
+    std::ranges::stable_sort(result, {}, [](const RaySegment* s) { return middle(*s); });
+    return result;
 }
 
 }  // namespace
@@ -66,19 +70,26 @@ std::vector<RaySegment> ray_segments(const Scene& scene, const std::vector<Cross
     return result;
 }
 
-std::vector<SurfaceHit> surface_hits(const IsoSurfaces& surfaces, std::span<const RaySegment> segments) {
-    std::vector<const RaySegment*> by_leave;
-    for (const RaySegment& segment : segments)
-        by_leave.push_back(&segment);
-    std::ranges::sort(by_leave, {}, [](const RaySegment* s) { return s->leave; });
+std::vector<SurfaceHit> surface_hits(const IsoSurfaces& surfaces, std::span<const RaySegment> segments, double rounding) {
+    const std::vector<const RaySegment*> along = in_order(segments, rounding);
+    // Where cells overlap, it is not told which one continues which.
+    std::vector<double> next_enter(along.size() + 1, std::numeric_limits<double>::infinity());
+    for (std::size_t i = along.size(); i-- > 0;)
+        next_enter[i] = std::min(along[i]->enter, next_enter[i + 1]);
+    double left_before = -std::numeric_limits<double>::infinity();  // by all but the last segment
+    const auto follows = [&](std::size_t i) {
+        return std::abs(along[i]->enter - along[i - 1]->leave) <= rounding && left_before < middle(*along[i - 1]) &&
+               next_enter[i + 1] > middle(*along[i]);
+    };
 
     std::vector<SurfaceHit> hits;
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-        const RaySegment& segment = segments[i];
-        if (const RaySegment* front = before(i, segments, by_leave)) {
-            const IsoCrossings jump = surfaces.crossings(front->scalars.back, segment.scalars.front);
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        const RaySegment& segment = *along[i];
+        if (i > 0 && follows(i)) {
+            const RaySegment& front = *along[i - 1];
+            const IsoCrossings jump = surfaces.crossings(front.scalars.back, segment.scalars.front);
             for (std::size_t k = 0; k < jump.size(); ++k)
-                hits.push_back({jump[k].surface, segment.enter, jump[k].rising, front->cell, front->at_leave});
+                hits.push_back({jump[k].surface, segment.enter, jump[k].rising, front.cell, front.at_leave});
         }
         const IsoCrossings inside = surfaces.crossings(segment.scalars.front, segment.scalars.back);
         for (std::size_t k = 0; k < inside.size(); ++k) {
@@ -89,6 +100,7 @@ std::vector<SurfaceHit> surface_hits(const IsoSurfaces& surfaces, std::span<cons
                 weights[corner] = (1.0 - share) * segment.at_enter[corner] + share * segment.at_leave[corner];
             hits.push_back({inside[k].surface, t, inside[k].rising, segment.cell, weights});
         }
+        if (i > 0) left_before = std::max(left_before, along[i - 1]->leave);
     }
     std::stable_sort(hits.begin(), hits.end(), [](const SurfaceHit& a, const SurfaceHit& b) { return a.t < b.t; });
     return hits;

@@ -3,9 +3,9 @@
 // The judge's view of one ray: its segments cell by cell, and the isosurfaces that it meets on them.
 //
 // A surface is met where the ray changes sides (classify/isosurface.hpp). The scalar on a face is one number for both its cells,
-// so that it is met once there. Where the scalar jumps from a segment to the one that follows it at the same place (a flat cell
-// lies between, which the ray crosses with no length; or a hanging point), the surfaces between both values lie in that
-// place: an isosurface has no holes but those of the mesh.
+// so that it is met once there. Where the scalar jumps from a segment to the one that follows it at the same place (a cell lies
+// between that the ray crosses with no length, or a hanging point), the surfaces between both values lie in that place: an
+// isosurface has no holes but those of the mesh.
 #pragma once
 
 #include <array>
@@ -43,7 +43,12 @@ struct SurfaceHit {
     std::array<double, 4> weights;  // of the cell's points there
 };
 
-// By ascending t; at one place in the order in which the ray passes them.
-std::vector<SurfaceHit> surface_hits(const IsoSurfaces& surfaces, std::span<const RaySegment> segments);
+// How far two t of one place may lie apart, for a mesh of that extent: 4e-15 of it (ray_index.hpp: a few units of 1e-16).
+inline double rounding_along_ray(double extent) { return 4e-15 * extent; }
+
+// By ascending t; at one place in the order in which the ray passes them. Segments not longer than `rounding` ≥ 0 [mesh units]
+// count as crossed with no length: which end comes first is chance there, and the jump over them tells the same. Where
+// cells overlap, each has its own surfaces, and jumps are not looked for.
+std::vector<SurfaceHit> surface_hits(const IsoSurfaces& surfaces, std::span<const RaySegment> segments, double rounding);
 
 }  // namespace cellproj

@@ -96,13 +96,14 @@ Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene
     validate(scene_);
     if (!index_) index_ = std::make_shared<RayIndex>(*scene_.mesh);
     if (!scene_.surfaces) return;
+    rounding_ = rounding_along_ray(bounds(scene_.mesh->points).diagonal());
     if (scene_.surfaces->shading == Shading::flat) gradients_ = cell_gradients(*scene_.mesh, *scene_.field);
     if (scene_.surfaces->shading == Shading::smooth) gradients_ = vertex_gradients(*scene_.mesh, *scene_.field);
 }
 
 std::vector<SurfaceHit> Reference::surfaces_along(const ViewRay& ray) const {
     if (!scene_.surfaces) return {};
-    return surface_hits(scene_.surfaces->isosurfaces, ray_segments(scene_, index_->cells_along(ray)));
+    return surface_hits(scene_.surfaces->isosurfaces, ray_segments(scene_, index_->cells_along(ray)), rounding_);
 }
 
 glm::dvec3 Reference::gradient_at(const SurfaceHit& hit) const {
@@ -127,7 +128,7 @@ Light Reference::reflected(const SurfaceHit& hit, const ViewRay& ray) const {
 Light Reference::light(const ViewRay& ray) const {
     const std::vector<RaySegment> along = ray_segments(scene_, index_->cells_along(ray));
     const std::vector<SurfaceHit> hits =
-        scene_.surfaces ? surface_hits(scene_.surfaces->isosurfaces, along) : std::vector<SurfaceHit>{};
+        scene_.surfaces ? surface_hits(scene_.surfaces->isosurfaces, along, rounding_) : std::vector<SurfaceHit>{};
     std::vector<double> bounds;
     bounds.reserve(2 * along.size() + hits.size());
     for (const RaySegment& segment : along)

@@ -88,6 +88,7 @@ private:
 
     Scene scene_;
     std::shared_ptr<const RayIndex> index_;
+    double rounding_ = 0;  // of places along a ray [mesh units]
     Gradients gradients_;  // of cells (flat) or points (smooth)
 };
 

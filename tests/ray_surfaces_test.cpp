@@ -99,7 +99,7 @@ TEST_P(SurfacesOfEither, OfALinearFieldArePlanes) {
                 list.push_back({v});
             const Scene scene = with(scene_of(grid_mesh(4, jitter, 2), linear, nothing()), surfaces(list, shading));
             const Reference reference(scene);
-            const Camera camera = view_of_unit_cube(GetParam());
+            const Camera camera = view_of_unit_cube(GetParam(), {2, 0.7, -0.5});
             int met = 0;
             for_rays_through_cube(camera, small, [&](PixelId, const CubeRay& seen) {
                 const ViewRay ray = reference.index().ray(seen.ray, GetParam() == Camera::Projection::perspective);
@@ -119,7 +119,7 @@ TEST_P(SurfacesOfEither, OfALinearFieldArePlanes) {
                 }
                 EXPECT_TRUE(std::ranges::is_sorted(hits, {}, &SurfaceHit::t));
             });
-            EXPECT_GT(met, 3000);
+            EXPECT_GT(met, 1500);
         }
     }
 }
@@ -130,7 +130,7 @@ TEST_P(SurfacesOfEither, TwentyLayersOfATenth) {
     for (int i = 0; i < 20; ++i)
         list.push_back({(i + 0.5) / 20, {1, 0.5, 0}, 0.1, {}});
     const Scene scene = with(scene_of(grid_mesh(7, 0.2, 5), linear, nothing()), surfaces(list));
-    const Camera camera = view_of_unit_cube(GetParam());
+    const Camera camera = view_of_unit_cube(GetParam(), {-2, -0.8, -0.7});
     const auto truths = Reference(scene).picture(camera, small);
     int most = 0, doubtful = 0;
     for_rays_through_cube(camera, small, [&](PixelId pixel, const CubeRay& seen) {
@@ -216,10 +216,12 @@ TEST(RaySurfaces, AreTheLimitOfPeaks) {
 void expect_sides_add_up(const Scene& scene, const Camera& camera, ImageSize size) {
     const Reference reference(scene);
     const auto& list = scene.surfaces->isosurfaces.surfaces();
+    const double rounding = rounding_along_ray(bounds(scene.mesh->points).diagonal());
     int met = 0;
     for (const PixelId& pixel : all_pixels(size)) {
         const ViewRay ray = reference.index().ray(camera, size, {pixel.x + 0.5, pixel.y + 0.5});
-        const auto segments = ray_segments(scene, reference.index().cells_along(ray));
+        auto segments = ray_segments(scene, reference.index().cells_along(ray));
+        std::erase_if(segments, [&](const RaySegment& segment) { return segment.leave - segment.enter <= rounding; });
         if (segments.empty()) continue;
         std::vector<int> up(list.size()), sides(list.size());
         for (const SurfaceHit& hit : reference.surfaces_along(ray)) {
@@ -352,7 +354,7 @@ TEST(RaySurfaces, OfAQuadraticFieldConvergeToTheSphere) {
                 ++met;
             }
         }
-        EXPECT_GT(met, 1000);
+        EXPECT_GT(met, 500);
         EXPECT_LT(normal, 1.0 / n);
         if (coarse > 0) {
             EXPECT_LT(normal, 0.7 * coarse);
