@@ -258,6 +258,27 @@ TEST(RaySurfaces, ChangeSidesWhateverTheRayRunsThrough) {
     }
 }
 
+// The count itself, not only the difference: planes of a linear field seen along edges and faces of a regular grid, at scalars
+// that its points have and others.
+TEST(RaySurfaces, AreMetOnceAlsoAlongEdgesAndFaces) {
+    std::vector<IsoSurface> list;
+    for (int i = 1; i < 24; ++i)
+        list.push_back({i / 24.0, {1, 1, 1}, 0.1, {}});
+    const auto f = [](const glm::dvec3& p) { return 0.5 * (p.z + 1.0 / 16 * p.x); };  // 0 .. 17/32
+    const Reference reference(with(scene_of(grid_mesh(6), f, nothing()), surfaces(list)));
+    for (const int side : {24, 23, 36}) {
+        for (const PixelId& pixel : all_pixels({side, side})) {
+            const auto hits = reference.surfaces_along(reference.index().ray(from_above(), {side, side}, {pixel.x + 0.5, pixel.y + 0.5}));
+            const double x = (pixel.x + 0.5) / side, low = x / 32, high = low + 0.5;
+            for (std::size_t k = 0; k < list.size(); ++k) {
+                const double v = list[k].value;
+                if (std::min(std::abs(v - low), std::abs(v - high)) < 1e-12) continue;  // by rounding
+                ASSERT_EQ(std::ranges::count(hits, k, &SurfaceHit::surface), low < v && v < high) << pixel.x << " " << pixel.y << " " << v;
+            }
+        }
+    }
+}
+
 // Between the two diagonals of a square lies a flat cell, which rays cross with no length: the scalar jumps, its surface is there.
 TEST(RaySurfaces, LieInFlatCells) {
     TetMesh mesh;
@@ -404,12 +425,15 @@ TEST(RaySurfaces, AreRefusedWhereTheyCannotBe) {
     EXPECT_NO_THROW(Reference(with(scene_of(mesh, on_cells, nothing()), surfaces({}))));
 }
 
-TEST(RaySurfaces, AreRefusedByARendererThatDoesNotDrawThem) {
-    const auto renderer = make_renderer(Backend::gl_osmesa);
+TEST(RaySurfaces, AreRefusedByRenderersThatDoNotDrawThem) {
     const Scene scene = scene_of(grid_mesh(2), linear, ramp());
     const Camera camera = view_of_unit_cube(Camera::Projection::parallel);
-    EXPECT_EQ(kind_of([&] { renderer->render(with(scene, surfaces({{0.5}})), camera, {8, 8}); }), ErrorKind::option);
-    EXPECT_NO_THROW(renderer->render(with(scene, surfaces({})), camera, {8, 8}));
+    for (const Backend backend : {Backend::gl_osmesa, Backend::cpu}) {
+        const auto renderer = make_renderer(backend);
+        EXPECT_EQ(kind_of([&] { renderer->prepare(with(scene, surfaces({{0.5}}))); }), ErrorKind::option);
+        EXPECT_EQ(kind_of([&] { renderer->render(with(scene, surfaces({{0.5}})), camera, {8, 8}); }), ErrorKind::option);
+        EXPECT_NO_THROW(renderer->render(with(scene, surfaces({})), camera, {8, 8}));
+    }
 }
 
 }  // namespace
