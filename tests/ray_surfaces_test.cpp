@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -17,6 +18,9 @@
 
 #include "classify/segment_integral.hpp"
 #include "mesh/error.hpp"
+#include "mesh/read.hpp"
+#include "mesh/scalar_field.hpp"
+#include "mesh/tetrahedralize.hpp"
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/layers.hpp"
@@ -277,6 +281,30 @@ TEST(RaySurfaces, AreMetOnceAlsoAlongEdgesAndFaces) {
             }
         }
     }
+}
+
+// 20 surfaces of opacity .1 through 187,395 cells of a real flow: k of them, 1 − .9^k.
+TEST(RaySurfaces, OfTheBluntFinAddUp) {
+    const std::filesystem::path folder = std::filesystem::path(CELLPROJ_SHARED_DATA) / "bluntfin";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
+    TetMesh mesh = tetrahedralize(read(folder / "bluntfinxyz.bin", {.solution = folder / "bluntfinq.bin"}));
+    const ScalarField field = select_scalar(mesh, "Density", "bluntfin");
+    std::vector<IsoSurface> list;
+    for (int i = 1; i <= 20; ++i)
+        list.push_back({quantile(field.values, i / 21.0), {1, 0.5, 0}, 0.1, {}});
+    const Camera camera = frame_bounds(bounds(mesh.points), Camera::Projection::perspective, {-0.6, -1.5, 0.9}, {0, 0, 1}, 1);
+    const Scene scene = with(scene_of(std::move(mesh), field, nothing()), surfaces(list));
+    const ImageSize size = CELLPROJ_SANITIZED ? ImageSize{16, 16} : ImageSize{64, 64};
+    expect_sides_add_up(scene, camera, size);
+    const Reference reference(scene);
+    std::size_t most = 0;
+    for (const PixelId& pixel : all_pixels(size)) {
+        const ViewRay ray = reference.index().ray(camera, size, {pixel.x + 0.5, pixel.y + 0.5});
+        const std::size_t k = reference.surfaces_along(ray).size();
+        EXPECT_NEAR(reference.light(ray).opacity, 1 - std::pow(0.9, k), 1e-14);
+        most = std::max(most, k);
+    }
+    EXPECT_GE(most, 15U);
 }
 
 // Between the two diagonals of a square lies a flat cell, which rays cross with no length: the scalar jumps, its surface is there.
