@@ -356,7 +356,8 @@ TEST(RaySurfaces, AtAWholeCellsValueAreItsBorderToWhatIsBelow) {
 }
 
 TEST(RaySurfaces, KeepTheirPlaceAtAnyScaleAndFarAway) {
-    for (const auto& [scale, offset] : {std::pair(1e-12, 0.0), {1e12, 0.0}, {1.0, 1e6}}) {
+    for (const auto& place_of_mesh : {std::pair(1e-12, 0.0), {1e12, 0.0}, {1.0, 1e6}}) {
+        const double scale = place_of_mesh.first, offset = place_of_mesh.second;
         TetMesh mesh = grid_mesh(5, 0.2, 6);
         for (glm::dvec3& p : mesh.points)
             p = scale * p + glm::dvec3(offset);
