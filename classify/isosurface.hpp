@@ -86,8 +86,8 @@ inline Light layer(const glm::dvec3& color, double opacity) { return {opacity * 
 //
 // Error: both scalars are rounded to the table's grid of step h = (high − low)/(n − 1), always in the same way. So the surfaces
 // are those of other isovalues, off by at most h/2, as closed and as correctly ordered as before; of several within one step the
-// places coincide. The share `t` is off by at most h/|s_b − s_f| besides. Scalars outside of low..high count as its ends: surfaces there are
-// lost. tests/isosurface_test.cpp.
+// places coincide. The share `t` is off by at most h/|s_b − s_f| besides. Scalars outside of low..high count as its ends:
+// surfaces there are lost. tests/isosurface_test.cpp.
 class IsoSurfaceTable {
 public:
     struct Texel {

@@ -198,8 +198,11 @@ TEST(RaySurfaces, AreTheLimitOfPeaks) {
     const Camera camera = view_of_unit_cube(Camera::Projection::parallel);
     const glm::dvec3 along = ScreenTransform(camera, small).ray({24, 24}).direction;
     constexpr double area = 0.4, tau = 0.8, v = 0.45, width = 1e-8;
-    const TransferFunction peak(OpticalModel::density, {{v - width, {1, 0.5, 0.25}}, {v - width, {0.1, 0.2, 1}}, {v + width, {0.1, 0.2, 1}}, {v + width, {1, 0.5, 0.25}}},
-                                {{v - width, tau}, {v - width, area / (2 * width)}, {v + width, area / (2 * width)}, {v + width, tau}});
+    constexpr double low = v - width, high = v + width, density = area / (2 * width);
+    const TransferFunction peak(
+        OpticalModel::density,
+        {{low, {1, 0.5, 0.25}}, {low, {0.1, 0.2, 1}}, {high, {0.1, 0.2, 1}}, {high, {1, 0.5, 0.25}}},
+        {{low, tau}, {low, density}, {high, density}, {high, tau}});
     const double opacity = -std::expm1(-area / std::abs(glm::dot(linear_slope, along)));
     const auto peaks = Reference(scene_of(grid_mesh(3, 0.2, 4), linear, peak)).picture(camera, small);
     const auto truths = Reference(with(scene_of(grid_mesh(3, 0.2, 4), linear, constant_medium(tau)),

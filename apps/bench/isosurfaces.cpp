@@ -108,8 +108,9 @@ BENCHMARK(VertexGradients)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime
 void ReferenceWithIsosurfaces(benchmark::State& state) {
     auto mesh = std::make_shared<TetMesh>(testing_support::grid_mesh(34, 0.2, 1));
     auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, waves));
-    const auto transfer = std::make_shared<TransferFunction>(OpticalModel::density, std::vector<ColorNode>{{0, {0.1, 0.2, 0.9}}, {1, {1, 0.6, 0}}},
-                                                             std::vector<ExtinctionNode>{{0, 0.1}, {1, 3}});
+    const auto transfer = std::make_shared<TransferFunction>(
+        OpticalModel::density, std::vector<ColorNode>{{0, {0.1, 0.2, 0.9}}, {1, {1, 0.6, 0}}},
+        std::vector<ExtinctionNode>{{0, 0.1}, {1, 3}});
     const Reference reference(
         {std::move(mesh), std::move(field), transfer, std::make_shared<SurfaceScene>(SurfaceScene{evenly(state.range(0), 0.05)})});
     const Camera camera =
