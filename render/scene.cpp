@@ -10,6 +10,12 @@
 
 namespace cellproj {
 
+namespace {
+
+bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
+
+}  // namespace
+
 void validate(const Scene& scene) {
     assert(scene.mesh && scene.field && scene.transfer);
     const ScalarField& field = *scene.field;
@@ -21,6 +27,19 @@ void validate(const Scene& scene) {
     if (std::none_of(field.values.begin(), field.values.end(), [](double s) { return std::isfinite(s); })) {
         throw Error({ErrorKind::data, "field \"" + field.name + "\"", "finite values", "none", "choose another field"});
     }
+    if (!has_surfaces(scene)) return;
+    if (field.location == FieldLocation::cells) {
+        throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",
+                     "one on cells, constant in each", "carry it to the points first"});
+    }
+    validate(scene.surfaces->lighting, "lights");
+}
+
+void refuse_surfaces(const Scene& scene, const std::string& backend) {
+    if (!has_surfaces(scene)) return;
+    throw Error({ErrorKind::option, backend, "a scene without isosurfaces",
+                 std::to_string(scene.surfaces->isosurfaces.surfaces().size()) + " of them",
+                 "leave them out: this renderer does not draw them"});
 }
 
 }  // namespace cellproj
