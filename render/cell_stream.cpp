@@ -15,8 +15,9 @@ namespace cellproj {
 namespace {
 
 // Rasterizers snap vertices to a grid of 1/256 of a pixel (llvmpipe, and most GPUs). Doing it before anything is decided makes
-// that harmless: the picture is then exact for a mesh whose points have moved by less than 1/512 of a pixel, the same for all
-// cells at a point, and no pixel centre falls between what the projection and what the rasterizer takes a cell to cover.
+// that harmless: cells are those of a mesh whose points have moved by less than 1/512 of a pixel, the same for all cells at a
+// point, and no pixel centre falls between what the projection and what the rasterizer takes a cell to cover. Scalars stay
+// where they were (project/silhouette.hpp).
 constexpr double snaps_per_pixel = 256.0;
 
 // How far beyond the picture triangles may reach, in pictures. Within it, float32 positions are good to 1e-6 of the picture.
@@ -99,8 +100,7 @@ CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, Imag
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             const glm::dvec3 p = transform_.to_eye((mesh.points[i] - eye_) / units.length);
             const bool behind = transform_.perspective() && p.z <= near_depth_;
-            const double depth = transform_.perspective() ? 1.0 / p.z : p.z;
-            points_[i] = behind ? ScreenPoint{{}, 0.0} : ScreenPoint{snapped_position(p), depth};
+            points_[i] = behind ? ScreenPoint{{}, {}, 0.0} : on_screen(p);
         }
     });
     oneapi::tbb::parallel_for(Range(0, scalars_.size(), 4096), [&](const Range& range) {
@@ -140,14 +140,14 @@ void CellStream::project(const ViewOrder& order, const VertexLighting& lighting,
     for_each_piece(order, batch, [&](const Corners& corners) { return light_corners(corners, lighting, batch); });
 }
 
-glm::dvec2 CellStream::snapped_position(const glm::dvec3& eye_point) const {
-    return glm::round(transform_.to_screen(eye_point) * snaps_per_pixel) / snaps_per_pixel;
+CellStream::ScreenPoint CellStream::on_screen(const glm::dvec3& p) const {
+    const glm::dvec2 place = transform_.to_screen(p), snapped = glm::round(place * snaps_per_pixel) / snaps_per_pixel;
+    return {snapped, glm::vec2(snapped - place), transform_.perspective() ? 1.0 / p.z : p.z};
 }
 
-ScreenVertex CellStream::on_screen(const glm::dvec3& p, double scalar) const {
-    if (!transform_.perspective()) return {snapped_position(p), p.z, scalar};
-    const double inverse = 1.0 / p.z;
-    return {snapped_position(p), inverse, scalar * inverse};
+void CellStream::set_corner(Corners& corners, std::size_t i, const ScreenPoint& point, double scalar) const {
+    corners.vertices[i] = {point.position, point.depth, transform_.perspective() ? scalar * point.depth : scalar};
+    corners.moved[i] = point.moved;
 }
 
 // False when a corner lies behind the near plane.
@@ -158,7 +158,7 @@ bool CellStream::load(CellId cell, Corners& corners) const {
         const ScreenPoint& p = points_[tet[i]];
         const double scalar = scalars_[per_point ? tet[i] : cell];
         if (transform_.perspective() && p.depth == 0.0) return false;
-        corners[i] = {p.position, p.depth, transform_.perspective() ? scalar * p.depth : scalar};
+        set_corner(corners, i, p, scalar);
     }
     return true;
 }
@@ -193,36 +193,57 @@ std::array<EyeVertex, 4> CellStream::eye_corners(const CellPiece& piece) const {
 CellStream::Pieces CellStream::clipped(const std::array<EyeVertex, 4>& corners) const {
     if (!transform_.perspective()) {
         Pieces whole{1, {}};
-        for (std::size_t i = 0; i < 4; ++i) whole.corners[0][i] = on_screen(corners[i].position, corners[i].scalar);
+        for (std::size_t i = 0; i < 4; ++i) set_corner(whole.corners[0], i, on_screen(corners[i].position), corners[i].scalar);
         return whole;
     }
     const ClippedTet tets = clip_near(corners, near_depth_);
     Pieces pieces{tets.count, {}};
     for (std::size_t piece = 0; piece < tets.count; ++piece) {
         for (std::size_t i = 0; i < 4; ++i) {
-            pieces.corners[piece][i] = on_screen(tets.tets[piece][i].position, tets.tets[piece][i].scalar);
+            const EyeVertex& v = tets.tets[piece][i];
+            set_corner(pieces.corners[piece], i, on_screen(v.position), v.scalar);
         }
     }
     return pieces;
 }
 
 bool CellStream::project_corners(const Corners& corners, TriangleBatch& batch) const {
-    const Rectangle box = bounding_box(corners);
+    const Rectangle box = bounding_box(corners.vertices);
     if (!covers_pixel(box)) return false;
-    const Silhouette silhouette = make_silhouette(corners, transform_.perspective());
+    const Silhouette silhouette =
+        make_silhouette(corners.vertices, corners.moved, origin_for(box), transform_.perspective());
     if (silhouette.triangle_count == 0) return false;
 
-    const StreamVertex constants = cell_constants(corners, silhouette);
-    append(std::span<const SilhouetteVertex>(silhouette.vertices),
-           std::span(silhouette.triangles).first(silhouette.triangle_count), !inside(guard_, box), guard_, batch,
-           [&](const SilhouetteVertex& v) { return stream_vertex(v, constants); });
+    const StreamVertex constants = cell_constants(corners.vertices, silhouette);
+    const bool cut = !inside(guard_, box);
+    if (!cut && silhouette.triangle_count == 2) {
+        // What belongs to a triangle is read at its last vertex: four serve both.
+        const auto first = static_cast<std::uint32_t>(batch.vertices.size());
+        batch.vertices.resize(first + 4);
+        for (std::size_t t = 0; t < 2; ++t) {
+            const StreamVertex terms = triangle_terms(silhouette, t, constants);
+            for (const std::uint8_t corner : silhouette.triangles[t]) {
+                batch.vertices[first + corner] = stream_vertex(silhouette.vertices[corner], terms);
+                batch.indices.push_back(first + corner);
+            }
+        }
+        return true;
+    }
+    for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {
+        const StreamVertex terms = triangle_terms(silhouette, t, constants);
+        const auto& [a, b, c] = silhouette.triangles[t];
+        const std::array vertices{silhouette.vertices[a], silhouette.vertices[b], silhouette.vertices[c]};
+        constexpr std::array<std::array<std::uint8_t, 3>, 1> triangle{{{0, 1, 2}}};
+        append(std::span<const SilhouetteVertex>(vertices), std::span(triangle), cut, guard_, batch,
+               [&](const SilhouetteVertex& v) { return stream_vertex(v, terms); });
+    }
     return true;
 }
 
 bool CellStream::light_corners(const Corners& corners, const VertexLighting& lighting, LitBatch& batch) const {
-    const Rectangle box = bounding_box(corners);
+    const Rectangle box = bounding_box(corners.vertices);
     if (!covers_pixel(box)) return false;
-    const ProjectedTet tet = project_tet(corners, transform_.perspective());
+    const ProjectedTet tet = project_tet(corners.vertices, transform_.perspective());
     const auto thick = static_cast<std::size_t>(tet.thick);
     if (tet.kind == ProjectionClass::nothing || tet.vertices[thick].thickness == 0.0) return false;
 
@@ -281,7 +302,7 @@ glm::vec2 CellStream::clip_space(const glm::dvec2& position) const {
 }
 
 // The part of a vertex that is equal for a whole cell.
-StreamVertex CellStream::cell_constants(const Corners& corners, const Silhouette& silhouette) const {
+StreamVertex CellStream::cell_constants(const std::array<ScreenVertex, 4>& corners, const Silhouette& silhouette) const {
     const bool perspective = transform_.perspective();
     const auto depth = [&](const ScreenVertex& v) { return perspective ? 1.0 / v.depth : v.depth; };
     const auto scalar = [&](const ScreenVertex& v) { return perspective ? v.scalar / v.depth : v.scalar; };
@@ -295,20 +316,41 @@ StreamVertex CellStream::cell_constants(const Corners& corners, const Silhouette
     // A ray that enters at the near plane counts from the eye on.
     if (perspective && near <= near_depth_ * 1.0001) near = 0.0;
     StreamVertex constants{};
-    constants.scalar_slope = static_cast<float>(silhouette.scalar_slope);
+    // The slope of a nearly flat cell must stay finite: infinity times no thickness is not a number.
+    constants.scalar_slope = static_cast<float>(std::clamp(silhouette.scalar_slope, -1e30, 1e30));
     constants.scalar_low = static_cast<float>(low);
     constants.scalar_high = static_cast<float>(high);
     constants.depth_range = static_cast<float>(silhouette.base_is_front ? far - near : near - far);
     return constants;
 }
 
-StreamVertex CellStream::stream_vertex(const SilhouetteVertex& v, const StreamVertex& constants) const {
-    const glm::vec2 position = clip_space(v.position);
+// The pixel of the picture nearest to the middle of the box.
+glm::dvec2 CellStream::origin_for(const Rectangle& box) const {
+    const glm::dvec2 picture(transform_.size().width, transform_.size().height);
+    return glm::clamp(glm::floor(0.5 * (box.low + box.high)), glm::dvec2(0.0), picture - 1.0) + 0.5;
+}
+
+StreamVertex CellStream::triangle_terms(const Silhouette& silhouette, std::size_t triangle, const StreamVertex& constants) const {
+    const auto set = [](float* floats, const ScreenPlane& plane) {
+        floats[0] = static_cast<float>(plane.value);
+        floats[1] = static_cast<float>(plane.gradient.x);
+        floats[2] = static_cast<float>(plane.gradient.y);
+    };
+    const SilhouetteTerms& terms = silhouette.terms[triangle];
     StreamVertex out = constants;
+    set(out.base_depth, terms.base_depth);
+    set(out.base_scalar, terms.base_scalar);
+    for (std::size_t ridge = 0; ridge < 3; ++ridge) set(out.thickness[ridge], terms.thickness[ridge]);
+    out.origin_x = static_cast<float>(silhouette.origin.x);
+    out.origin_y = static_cast<float>(silhouette.origin.y);
+    return out;
+}
+
+StreamVertex CellStream::stream_vertex(const SilhouetteVertex& v, const StreamVertex& terms) const {
+    const glm::vec2 position = clip_space(v.position);
+    StreamVertex out = terms;
     out.x = position.x;
     out.y = position.y;
-    out.base_depth = static_cast<float>(v.base_depth);
-    out.base_scalar = static_cast<float>(v.base_scalar);
     for (int ridge = 0; ridge < 3; ++ridge) out.ridges[ridge] = static_cast<float>(v.ridges[ridge]);
     return out;
 }

@@ -18,15 +18,17 @@
 namespace cellproj {
 
 // A vertex as the rasterizer gets it: a silhouette's (project/silhouette.hpp). Positions are in clip space (−1 .. 1 over the
-// picture, row 0 at y = −1, w = 1), lengths in SceneUnits::length, scalars normalized. The last four are equal at all vertices of
-// a cell; slivers extrapolate at pixel centres just outside, so the fragment clamps to the cell's range.
+// picture, row 0 at y = −1, w = 1), lengths in SceneUnits::length, scalars normalized. Behind the ridges, all is of the triangle whose
+// last vertex it is: planes are the value at the origin and what it changes by per pixel to the right and down.
 struct StreamVertex {
     float x, y;
-    float base_depth, base_scalar;
     float ridges[3];
+    float base_depth[3], origin_x;
+    float base_scalar[3], origin_y;  // pixels; a pixel centre
+    float thickness[3][3];
     float scalar_slope;
-    float scalar_low, scalar_high;
-    float depth_range;  // largest minus smallest depth; negative when the base is the back
+    float scalar_low, scalar_high;  // slivers extrapolate at pixel centres just outside, so the fragment clamps to the cell's range
+    float depth_range;              // largest minus smallest depth; negative when the base is the back
 };
 
 // A vertex of the classical split with its light (classify/vertex_light.hpp). The last three are equal at all vertices of a cell.
@@ -74,7 +76,10 @@ public:
     double near_depth() const { return near_depth_; }
 
 private:
-    using Corners = std::array<ScreenVertex, 4>;
+    struct Corners {
+        std::array<ScreenVertex, 4> vertices;  // on the rasterizer's grid
+        std::array<glm::dvec2, 4> moved;       // how far to get there [pixels]
+    };
 
     struct Pieces {
         std::size_t count;
@@ -83,8 +88,14 @@ private:
 
     template <class Vertex, class Draw>
     void for_each_piece(const ViewOrder& order, Triangles<Vertex>& batch, Draw draw) const;
-    glm::dvec2 snapped_position(const glm::dvec3& eye_point) const;
-    ScreenVertex on_screen(const glm::dvec3& eye_point, double scalar) const;
+    struct ScreenPoint {
+        glm::dvec2 position;  // pixels, on the rasterizer's grid
+        glm::vec2 moved;      // how far to get there [pixels]
+        double depth;         // depth term; 0: behind the near plane
+    };
+
+    ScreenPoint on_screen(const glm::dvec3& eye_point) const;
+    void set_corner(Corners& corners, std::size_t i, const ScreenPoint& point, double scalar) const;
     bool load(CellId cell, Corners& corners) const;
     std::array<EyeVertex, 4> eye_corners(CellId cell) const;
     std::array<EyeVertex, 4> eye_corners(const CellPiece& piece) const;
@@ -94,13 +105,10 @@ private:
     VertexLight light_at(const ProjectedVertex& thick, const VertexLighting& lighting) const;
     bool covers_pixel(const Rectangle& box) const;
     glm::vec2 clip_space(const glm::dvec2& position) const;
-    StreamVertex cell_constants(const Corners& corners, const Silhouette& silhouette) const;
-    StreamVertex stream_vertex(const SilhouetteVertex& v, const StreamVertex& constants) const;
-
-    struct ScreenPoint {
-        glm::dvec2 position;  // pixels
-        double depth;         // depth term; 0: behind the near plane
-    };
+    StreamVertex cell_constants(const std::array<ScreenVertex, 4>& corners, const Silhouette& silhouette) const;
+    glm::dvec2 origin_for(const Rectangle& box) const;
+    StreamVertex triangle_terms(const Silhouette& silhouette, std::size_t triangle, const StreamVertex& constants) const;
+    StreamVertex stream_vertex(const SilhouetteVertex& v, const StreamVertex& terms) const;
 
     const PreparedScene& prepared_;
     glm::dvec3 eye_;

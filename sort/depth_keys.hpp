@@ -26,6 +26,8 @@ public:
     }
     // The numbers of the elements whose key is not `no_key`, by ascending key; equal ones by number. The same for any number of threads.
     std::span<std::uint32_t> sort();
+    // The last result again.
+    std::span<std::uint32_t> sorted() { return sorted_; }
 
 private:
     struct Entry {

@@ -24,12 +24,16 @@ constexpr std::size_t cells_per_task = 4096;
 constexpr double half_ulp = 0x1p-53, half_ulp_float = 0x1p-24;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-// Nearness beyond this is that of flat cells at the boundary, whose centres may be anywhere.
-constexpr float nearness_limit = 8.0F;
+// Circumcentres inside the mesh have a nearness within ±4 or nearly so. Those of flat cells at the boundary may lie anywhere: beyond,
+// keys grow by the logarithm, up to a factor of 2³².
+constexpr float common_nearness = 4.0F;
 
 std::uint32_t key_of(float nearness) {
-    constexpr float scale = static_cast<float>(largest_key) / (2 * nearness_limit);
-    return static_cast<std::uint32_t>((std::clamp(nearness, -nearness_limit, nearness_limit) + nearness_limit) * scale);
+    constexpr float limit = 1.0F + 32.0F / 256.0F;
+    constexpr float scale = static_cast<float>(largest_key) / (2 * limit);
+    const float part = std::abs(nearness) / common_nearness;
+    const float height = part <= 1.0F ? part : std::min(1.0F + std::log2(part) / 256.0F, limit);
+    return static_cast<std::uint32_t>((std::copysign(height, nearness) + limit) * scale);
 }
 
 double largest_coordinate(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }

@@ -113,10 +113,17 @@ std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye,
                                                                  OrderReport& report) {
     if (!powers) powers.emplace(graph);
     powers->find(graph, eye, visible, key_sort.keys(graph.size()));
-    const auto places = key_sort.sort();
+    auto places = key_sort.sort();
     if (!is_delaunay()) return places;
     report.exact = powers->settle(graph, eye, places);
-    return report.exact ? places : order_by_relations(eye, report);
+    if (report.exact) return places;
+    if (visible.empty()) return order_by_relations(eye, report);
+    // A relation in doubt leads through a cell that was left out: with all cells.
+    const auto all = order_by_powers(eye, {}, report);
+    if (report.method != OrderMethod::power) return all;
+    places = key_sort.sorted();
+    const auto last = std::remove_if(places.begin(), places.end(), [&](CellId place) { return visible[graph.cell(place)] == 0; });
+    return all.first(static_cast<std::size_t>(last - places.begin()));
 }
 
 // In a mesh that fills a convex body any topological order will do. Elsewhere, and in cycles, depth has to help.
@@ -133,7 +140,7 @@ std::span<const CellId> VisibilitySorter::State::order_by_relations(const Eye& e
 }
 
 std::span<const CellId> VisibilitySorter::State::order_of_convex(const Eye& eye) {
-    return last_eye && close_to_last(eye) ? topological.run_again(graph, eye) : topological.run(graph, eye);
+    return last_eye && topological.can_run_again(graph) && close_to_last(eye) ? topological.run_again(graph, eye) : topological.run(graph, eye);
 }
 
 // Within a few degrees around the mesh: beyond 10 the last order is no help (sort/README.md).

@@ -90,6 +90,30 @@ TEST_F(CommandLine, StatisticsHaveTheirKeys) {
     EXPECT_EQ(picture.at("backend"), "gl_osmesa");
 }
 
+TEST_F(CommandLine, TheOrderIsChosenProvenAndDoubtedAloud) {
+    const auto order_of = [&](const std::string& options) {
+        const Outcome outcome = run("render cube.vtk -o cube.png --size 40x30 --stats stats.json " + options);
+        EXPECT_EQ(outcome.code, 0) << outcome.text;
+        std::ifstream stream(path("stats.json"));
+        return std::pair(outcome.text, nlohmann::json::parse(stream).at("pictures").at(0));
+    };
+    const auto [quiet, exact] = order_of("");
+    EXPECT_EQ(quiet.find("warning"), std::string::npos) << quiet;
+    EXPECT_EQ(exact.at("order_exact"), true);
+    EXPECT_TRUE(exact.at("order_check").is_null());
+
+    const auto [doubtful, centroid] = order_of("--order centroid --verify-order");
+    EXPECT_NE(doubtful.find("not proven"), std::string::npos) << doubtful;
+    EXPECT_NE(doubtful.find("of 1200 rays"), std::string::npos) << doubtful;
+    EXPECT_EQ(centroid.at("order"), "centroid");
+    EXPECT_EQ(centroid.at("order_exact"), false);
+
+    const auto [told, mpvo] = order_of("--order mpvo --verify-order");
+    EXPECT_NE(told.find("order mpvo, exact: 0 face relations violated; 0 of 1200 rays"), std::string::npos) << told;
+    EXPECT_EQ(mpvo.at("order_check").at("wrong_rays"), 0);
+    EXPECT_EQ(run("render cube.vtk -o cube.png --order best").code, 2);
+}
+
 TEST_F(CommandLine, MethodAndTargetAreChosenAndTold) {
     const Outcome outcome =
         run("render cube.vtk -o cube.png --size 20x20 --method shirley-tuchman --target rgba16f --stats stats.json");

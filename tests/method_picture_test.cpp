@@ -38,6 +38,13 @@ const std::vector<std::string> methods{"average",
                                        "preint3d:16:linear:float16",
                                        "preint3d:16:linear:uint8"};
 
+// Those of the transfer function's own pieces have a picture test of their own (piece_method_test).
+std::vector<std::string> methods_and_pieces() {
+    std::vector<std::string> all = methods;
+    all.insert(all.end(), {"integral", "exact:1e-5"});
+    return all;
+}
+
 TransferFunction ramp(OpticalModel model = OpticalModel::density) {
     return {
         model, {{0, {0.1, 0.2, 0.9}}, {0.4, {0.2, 1.0, 0.2}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.2}, {0.5, 6.0}, {1, 2.0}}};
@@ -153,7 +160,7 @@ TEST(MethodPicture, ExtremesStayFiniteAndPhysical) {
                               {{0, 0}, {0.5, 1e-30}, {1, 1e6}}),
              TransferFunction(OpticalModel::emitter, colors, {{0, 0}}),
          })
-        for (const std::string& method : methods) {
+        for (const std::string& method : methods_and_pieces()) {
             const Image image = renderer->render(one_cell(f), view(), size, {.method = parse_method(method)});
             for (const auto& pixel : image.pixels) {
                 ASSERT_TRUE(pixel.a >= 0.0F && pixel.a <= 1.0F) << method << " " << pixel.a;
@@ -172,7 +179,7 @@ TEST(MethodPicture, AnotherTransferFunctionReachesTheNextPicture) {
     const TransferFunction local(OpticalModel::density, ramp().color_nodes(),
                                  {{0, 0.2}, {0.5, 6.0}, {0.7, 0.5}, {1, 2.0}});
     const TransferFunction bright(OpticalModel::emitter, ramp().color_nodes(), {{0, 9}, {1, 0}});
-    for (const std::string& method : methods) {
+    for (const std::string& method : methods_and_pieces()) {
         Scene scene = one_cell(ramp());
         const auto renderer = make_renderer(Backend::gl_osmesa);
         auto before = picture(*renderer, ramp(), method, scene);

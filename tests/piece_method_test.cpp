@@ -241,6 +241,38 @@ TEST(PieceMethod, ShadersComputeTheSame) {
     }
 }
 
+// Rays along which the scalar is the same: all of the segment is in one piece, mostly not in the first of its cell.
+TEST(PieceMethod, AConstantScalarAlongTheRayIsInItsOwnPiece) {
+    const auto mesh = std::make_shared<TetMesh>(testing_support::unit_tet());
+    const auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, [](const glm::dvec3& p) { return p.x; }));
+    const Camera camera{.projection = Camera::Projection::parallel, .eye = {0.5, 0.5, 3.5}, .center = {0.5, 0.5, 0.5},
+                        .up = {0, 1, 0}, .height = 1.5};
+    const ImageSize size{96, 96};
+    const ScreenTransform transform(camera, size);
+    for (const Function& function : all_functions()) {
+        const auto transfer = std::make_shared<TransferFunction>(function.transfer);
+        for (const char* text : {"integral", "exact:1e-5"}) {
+            const Image image = renderer().render({mesh, field, transfer}, camera, size, {.method = parse_method(text)});
+            double largest = 0;
+            for (int y = 0; y < size.height; ++y) {
+                for (int x = 0; x < size.width; ++x) {
+                    const glm::dvec3 p = transform.ray({x + 0.5, y + 0.5}).origin;
+                    if (p.x < 0.001 || p.y < 0.001 || p.x + p.y > 0.98) continue;
+                    // Within what float32 takes for the scalar: nodes of steps may lie there.
+                    double least = 1e9;
+                    for (const double shift : {-1e-6, 0.0, 1e-6}) {
+                        const Light expected = integrate_segment(function.transfer, p.x + shift, p.x + shift, 1 - p.x - p.y);
+                        least = std::min(least, error(expected, {glm::dvec3(image.at(x, y)), image.at(x, y).w}));
+                    }
+                    largest = std::max(largest, least);
+                }
+            }
+            // Peaks rise by 2560 per unit of the scalar, which is good to 1e-7; an emitter is as bright as 2. Blocks: no.
+            EXPECT_LE(largest, 3e-4) << function.name << " " << text;
+        }
+    }
+}
+
 // ---- Another transfer function.
 
 TEST(PreparedScene, FindsTheVisibleCellsOfAnotherFunction) {

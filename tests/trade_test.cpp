@@ -208,7 +208,7 @@ TEST(TradeChoice, SaysWhenNothingIsWithinAndTakesExact) {
     const Camera camera = testing_support::view_of_unit_cube(Camera::Projection::parallel);
     const auto renderer = make_renderer(Backend::gl_osmesa);
     const QualityChoice choice =
-        choose_quality(*renderer, scene, camera, {48, 48}, 1e-4, {.target = TargetFormat::rgba8, .sample = 200});
+        choose_quality(*renderer, scene, camera, {48, 48}, 1e-4, {.base = {.target = TargetFormat::rgba8}, .sample = 200});
     EXPECT_FALSE(choice.met);
     EXPECT_EQ(to_string(choice.candidates[choice.chosen].quality), "exact:1e-06, rgba8");
     EXPECT_GT(largest(choice.candidates[choice.chosen].error), 1e-4);

@@ -4,6 +4,7 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <set>
 #include <utility>
 
@@ -32,6 +33,14 @@ void set_blending() {
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // associated colours, back to front
+}
+
+// Segments that are taken back (project/silhouette.hpp) leave what is below nothing by their rounding.
+void keep_physical(Image& image) {
+    for (glm::vec4& pixel : image.pixels) {
+        pixel = glm::max(pixel, glm::vec4(0.0F));
+        pixel.a = std::min(pixel.a, 1.0F);
+    }
 }
 
 // What shaders/cell.frag knows of a perspective camera.
@@ -145,6 +154,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     const Stopwatch read_back;
     Image image = target_.read();
     check_errors("drawing");
+    keep_physical(image);
     statistics.ms.read_back = read_back.ms();
     statistics.ms.total = total.ms();
 

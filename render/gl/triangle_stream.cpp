@@ -13,10 +13,14 @@ namespace {
 
 constexpr GLuint vertex_binding = 0;
 
-constexpr std::array<VertexAttribute, 4> stream_attributes{{{0, 2, offsetof(StreamVertex, x)},
-                                                            {1, 2, offsetof(StreamVertex, base_depth)},
-                                                            {2, 3, offsetof(StreamVertex, ridges)},
-                                                            {3, 4, offsetof(StreamVertex, scalar_slope)}}};
+constexpr std::array<VertexAttribute, 8> stream_attributes{{{0, 2, offsetof(StreamVertex, x)},
+                                                            {1, 3, offsetof(StreamVertex, ridges)},
+                                                            {2, 4, offsetof(StreamVertex, base_depth)},
+                                                            {3, 4, offsetof(StreamVertex, base_scalar)},
+                                                            {4, 3, offsetof(StreamVertex, thickness[0])},
+                                                            {5, 3, offsetof(StreamVertex, thickness[1])},
+                                                            {6, 3, offsetof(StreamVertex, thickness[2])},
+                                                            {7, 4, offsetof(StreamVertex, scalar_slope)}}};
 constexpr std::array<VertexAttribute, 4> lit_attributes{{{0, 2, offsetof(LitVertex, x)},
                                                          {1, 1, offsetof(LitVertex, share)},
                                                          {2, 3, offsetof(LitVertex, color)},

@@ -1,8 +1,9 @@
 #version 450 core
 // SPDX-License-Identifier: BSD-3-Clause
 // One ray segment inside a cell. The method's file, behind this one, says what light it gives.
-in vec2 v_base;
 in vec3 v_ridges;
+flat in vec4 v_base_depth, v_base_scalar;
+flat in mat3 v_thickness;
 flat in vec4 v_cell;
 
 uniform vec2 principal_point;   // pixels
@@ -30,12 +31,19 @@ vec4 homogeneous_light(vec3 emission, float extinction, float segment) {
 }
 
 void main() {
-    float thickness = max(min(min(v_ridges.x, v_ridges.y), v_ridges.z), 0.0);
-    float other_scalar = v_base.y + v_cell.x * thickness;
+    // About a pixel of the cell: the rasterizer's own interpolation, from a corner of the picture on, loses what slopes per pixel
+    // times the picture's size.
+    vec3 place = vec3(1.0, gl_FragCoord.xy - vec2(v_base_depth.w, v_base_scalar.w));
+    float ridge = min(min(v_ridges.x, v_ridges.y), v_ridges.z);
+    vec3 plane = ridge == v_ridges.x ? v_thickness[0] : ridge == v_ridges.y ? v_thickness[1] : v_thickness[2];
+    float thickness = dot(plane, place);
+    float base_depth = dot(v_base_depth.xyz, place);
+    float base_scalar = dot(v_base_scalar.xyz, place);
+    float other_scalar = base_scalar + v_cell.x * thickness;
     bool base_is_front = v_cell.w > 0.0;
-    vec2 s = base_is_front ? vec2(v_base.y, other_scalar) : vec2(other_scalar, v_base.y);  // front, back
+    vec2 s = base_is_front ? vec2(base_scalar, other_scalar) : vec2(other_scalar, base_scalar);  // front, back
 #ifdef PERSPECTIVE
-    float front = base_is_front ? v_base.x : v_base.x + thickness;  // 1 / depth, nearer is larger
+    float front = base_is_front ? base_depth : base_depth + thickness;  // 1 / depth, nearer is larger
     float back = front - thickness;
     // Cells cut by the near plane are drawn from the eye on (cell_stream.hpp).
     bool at_near_plane = front > 0.999 * inverse_near;
@@ -48,9 +56,11 @@ void main() {
     float ray = 1.0;
 #endif
     // Pixel centres just outside a sliver extrapolate; no segment leaves the cell's own range.
-    float segment = min(depth_difference, abs(v_cell.w)) * ray;
+    float segment = min(abs(depth_difference), abs(v_cell.w)) * ray;
     s = clamp(s, v_cell.y, v_cell.z);
     light = light_of_segment(s.x, s.y, segment);
+    // Less than nothing, close to an edge: what undoes the blending of this light. Dense media hide it.
+    if (depth_difference < 0.0) light *= light.a < 0.25 ? -1.0 / (1.0 - light.a) : 0.0;
 #ifdef HALF_OPACITY  // three passes in one: classify/half_opacity.hpp
     light *= vec4(vec3(1.0 - 0.5 * light.a), 1.0 - 0.25 * light.a);
 #endif

@@ -1,14 +1,17 @@
 #version 450 core
 // SPDX-License-Identifier: BSD-3-Clause
-// Silhouettes of cells (project/silhouette.hpp): positions are final and w = 1, so that all terms are interpolated linearly
-// on the screen.
+// Silhouettes of cells (project/silhouette.hpp): positions are final and w = 1, so that ridges are interpolated linearly on the
+// screen. What belongs to a triangle comes from its last vertex.
 layout(location = 0) in vec2 position;  // clip space
-layout(location = 1) in vec2 base;      // depth term, scalar term on the base
-layout(location = 2) in vec3 ridges;
-layout(location = 3) in vec4 cell;      // scalar slope, lowest and highest scalar, depth range (negative: base at the back)
+layout(location = 1) in vec3 ridges;
+layout(location = 2) in vec4 base_depth;   // depth term on the base, as a plane; x of the origin
+layout(location = 3) in vec4 base_scalar;  // scalar term on the base, as a plane; y of the origin
+layout(location = 4) in mat3 thickness;    // a plane for each ridge
+layout(location = 7) in vec4 cell;         // scalar slope, lowest and highest scalar, depth range (negative: base at the back)
 
-out vec2 v_base;
 out vec3 v_ridges;
+flat out vec4 v_base_depth, v_base_scalar;
+flat out mat3 v_thickness;
 flat out vec4 v_cell;
 
 // What the method wants to know of a cell between two scalars.
@@ -16,8 +19,10 @@ void prepare_cell(float low, float high);
 
 void main() {
     prepare_cell(cell.y, cell.z);
-    v_base = base;
     v_ridges = ridges;
+    v_base_depth = base_depth;
+    v_base_scalar = base_scalar;
+    v_thickness = thickness;
     v_cell = cell;
     gl_Position = vec4(position, 0.0, 1.0);
 }
