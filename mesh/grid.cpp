@@ -16,8 +16,7 @@ constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 
 [[noreturn]] void fail(const std::string& place, const std::string& expected, const std::string& found,
                        const std::string& advice) {
-    throw Error(
-        {.kind = ErrorKind::data, .place = place, .expected = expected, .found = found, .advice = advice});
+    throw Error({.kind = ErrorKind::data, .place = place, .expected = expected, .found = found, .advice = advice});
 }
 
 template <class Visit>
@@ -161,8 +160,8 @@ std::array<double, 8> Grid::corner_values(const GridCell& c) const {
 std::array<double, 8> corner_weights(const glm::dvec3& u) {
     std::array<double, 8> weights{};
     for (std::size_t c = 0; c < 8; ++c) {
-        weights[c] = ((c & 1U) != 0 ? u.x : 1.0 - u.x) * ((c & 2U) != 0 ? u.y : 1.0 - u.y) *
-                     ((c & 4U) != 0 ? u.z : 1.0 - u.z);
+        weights[c] =
+            ((c & 1U) != 0 ? u.x : 1.0 - u.x) * ((c & 2U) != 0 ? u.y : 1.0 - u.y) * ((c & 4U) != 0 ? u.z : 1.0 - u.z);
     }
     return weights;
 }
@@ -219,8 +218,7 @@ void validate(const Grid& grid, const std::string& place) {
     }
     for_each_cell(n, [&](const GridCell& c) {
         if (grid.is_blanked(c) || is_finite_at(grid, c)) return;
-        fail(place + ", cell " + std::to_string(grid.cell_id(c)), "finite values", "NaN or infinity",
-             "blank the cell");
+        fail(place + ", cell " + std::to_string(grid.cell_id(c)), "finite values", "NaN or infinity", "blank the cell");
     });
 }
 

@@ -18,8 +18,7 @@ std::string to_words(double number) {
 
 [[noreturn]] void fail(const std::string& place, const std::string& expected, const std::string& found,
                        const std::string& advice) {
-    throw Error(
-        {.kind = ErrorKind::data, .place = place, .expected = expected, .found = found, .advice = advice});
+    throw Error({.kind = ErrorKind::data, .place = place, .expected = expected, .found = found, .advice = advice});
 }
 
 }  // namespace
@@ -49,12 +48,14 @@ int require_monotonic(const GridAxis& axis, const std::string& place) {
         const double before = axis.coordinates[i - 1];
         if (x == before) {
             fail(here, "a coordinate other than that of the point before", to_words(x),
-                 "leave repeated points out; a spacing far below the last digit of the coordinates needs another origin");
+                 "leave repeated points out; a spacing far below the last digit of the coordinates needs another "
+                 "origin");
         }
         const int step = x > before ? 1 : -1;
         if (direction == 0) direction = step;
         if (step == direction) continue;
-        fail(here, direction > 0 ? "coordinates that ascend, as those before" : "coordinates that descend, as those before",
+        fail(here,
+             direction > 0 ? "coordinates that ascend, as those before" : "coordinates that descend, as those before",
              to_words(x) + " behind " + to_words(before), "sort the axis and its values");
     }
     return direction;

@@ -22,9 +22,9 @@ struct GridAxis {
 
 GridAxis uniform_axis(double first, double spacing, std::size_t points);
 
-// +1 for an axis that ascends strictly, −1 for one that descends strictly. Throws Error (data) at `place`, which names the
-// first offender, for fewer than two points, a coordinate or spacing that is not finite, a spacing of 0, neighbours that
-// coincide (a spacing too small beside the coordinates does that, too) and axes that turn round.
+// +1 for an axis that ascends strictly, −1 for one that descends strictly. Throws Error (data) at `place`, which names
+// the first offender, for fewer than two points, a coordinate or spacing that is not finite, a spacing of 0, neighbours
+// that coincide (a spacing too small beside the coordinates does that, too) and axes that turn round.
 int require_monotonic(const GridAxis& axis, const std::string& place);
 
 }  // namespace cellproj

@@ -28,23 +28,28 @@ std::string numbers(std::size_t count, bool as_text) {
 
 // An image as VTK XML text; `inside` goes into the tag of the image, `arrays` behind the field "v".
 std::string vti(const std::string& inside, const std::string& cell_arrays, const std::string& point_arrays = "") {
-    return "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 9 0 2 0 1\" " +
+    return "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 9 0 2 0 "
+           "1\" " +
            inside + "><Piece Extent=\"0 9 0 2 0 1\"><PointData>" +
            "<DataArray type=\"Float64\" Name=\"v\" format=\"ascii\">" + numbers(point_count, true) + "</DataArray>" +
-           point_arrays + "</PointData><CellData>" + cell_arrays +
-           "</CellData></Piece></ImageData></VTKFile>\n";
+           point_arrays + "</PointData><CellData>" + cell_arrays + "</CellData></Piece></ImageData></VTKFile>\n";
 }
 const std::string placed = "Origin=\"1 2 -1\" Spacing=\"0.5 1 2\"";
 
 std::string legacy_grid(const std::string& x, const std::string& y = "2 3 4", const std::string& z = "-1 1") {
-    return "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 10 3 2\nX_COORDINATES 10 double\n" + x +
-           "\nY_COORDINATES 3 double\n" + y + "\nZ_COORDINATES 2 double\n" + z +
+    return "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 10 3 2\nX_COORDINATES 10 "
+           "double\n" +
+           x + "\nY_COORDINATES 3 double\n" + y + "\nZ_COORDINATES 2 double\n" + z +
            "\nPOINT_DATA 60\nSCALARS v double\nLOOKUP_TABLE default\n" + numbers(point_count, true) + "\n";
 }
 
-Grid grid_of(const Dataset& dataset) { return make_grid(dataset, as_scalar(dataset.point_fields.at(0), FieldLocation::points)); }
+Grid grid_of(const Dataset& dataset) {
+    return make_grid(dataset, as_scalar(dataset.point_fields.at(0), FieldLocation::points));
+}
 
-Grid read_grid(const fs::path& file, const ReadOptions& options = {}) { return grid_of(read(file, options)); }
+Grid read_grid(const fs::path& file, const ReadOptions& options = {}) {
+    return grid_of(read(file, options));
+}
 
 // The message of an Error of `make_grid` on what a file holds.
 std::string grid_error(const fs::path& file) {
@@ -81,8 +86,9 @@ TEST(Grid, OutOfEveryFormatThatHoldsOne) {
         "ObjectType = Image\nNDims = 3\nDimSize = 10 3 2\nElementSpacing = 0.5 1 2\nOffset = 1 2 -1\n"
         "ElementType = MET_UCHAR\nElementByteOrderMSB = False\nElementDataFile = LOCAL\n";
     const std::string nrrd = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 10 3 2\nspacings: 0.5 1 2\nencoding: raw\n\n";
-    const std::string points = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 10 3 2\n"
-                               "ORIGIN 1 2 -1\nSPACING 0.5 1 2\nPOINT_DATA 60\nSCALARS v double\nLOOKUP_TABLE default\n";
+    const std::string points =
+        "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 10 3 2\n"
+        "ORIGIN 1 2 -1\nSPACING 0.5 1 2\nPOINT_DATA 60\nSCALARS v double\nLOOKUP_TABLE default\n";
     for (const fs::path& file : {write("a.mha", mha + numbers(60, false)), write("a.nrrd", nrrd + numbers(60, false)),
                                  write("a.vti", vti(placed, "")), write("a.vtk", points + numbers(60, true))}) {
         SCOPED_TRACE(file);
@@ -113,8 +119,8 @@ TEST(Grid, AxesThatDescendAreTurned) {
     const Grid grid = read_grid(write("b.vtk", legacy_grid("5.5 5 4.5 4 3.5 3 2.5 2 1.5 1", "2 3 4", "1 -1")));
     validate(grid, "test");
     EXPECT_EQ(grid.bounds().low, glm::dvec3(1, 2, -1));
-    EXPECT_EQ(grid.values[0], 9 + 30);       // the file's (9, 0, 1)
-    EXPECT_EQ(grid.values[9 + 10 * 2], 20);  // its (0, 2, 1)
+    EXPECT_EQ(grid.values[0], 9 + 30);            // the file's (9, 0, 1)
+    EXPECT_EQ(grid.values[9 + 10 * 2], 20 + 30);  // its (0, 2, 1)
     const RawVolume raw{.dimensions = {10, 3, 2}, .spacing = {0.5, -1, 2}, .origin = {1, 4, -1}};
     const Grid mirrored = read_grid(write("a.raw", numbers(60, false)), {.raw = raw});
     validate(mirrored, "test");
@@ -131,7 +137,8 @@ TEST(Grid, BlankedCellsAndMissingValues) {
         cells += std::to_string(100 + c) + " ";
     }
     const std::string arrays = "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"ascii\">" + ghosts +
-                               "</DataArray><DataArray type=\"Float64\" Name=\"c\" format=\"ascii\">" + cells + "</DataArray>";
+                               "</DataArray><DataArray type=\"Float64\" Name=\"c\" format=\"ascii\">" + cells +
+                               "</DataArray>";
     const Dataset dataset = read(write("holes.vti", vti(placed, arrays)));
     EXPECT_FALSE(dataset.grid);
     ASSERT_EQ(dataset.cell_count(), 16U);
@@ -162,33 +169,39 @@ TEST(Grid, BlankedCellsAndMissingValues) {
 
 TEST(Grid, WhatIsNoneIsTold) {
     const auto x = [](const std::string& list) { return write("bad.vtk", legacy_grid(list)); };
-    EXPECT_NE(grid_error(x("1 1.5 2 2.5 2.25 3.5 4 4.5 5 5.5")).find("axis x, point 4: expected coordinates that ascend"),
-              std::string::npos);
+    EXPECT_NE(
+        grid_error(x("1 1.5 2 2.5 2.25 3.5 4 4.5 5 5.5")).find("axis x, point 4: expected coordinates that ascend"),
+        std::string::npos);
     EXPECT_NE(grid_error(x("5 4 3 3.5 2 1.5 1.4 1.3 1 0")).find("axis x, point 3: expected coordinates that descend"),
               std::string::npos);
-    EXPECT_NE(grid_error(x("1 1.5 2 2.5 2.5 3.5 4 4.5 5 5.5")).find("axis x, point 4: expected a coordinate other than"),
-              std::string::npos);
-    EXPECT_NE(grid_error(write("zero.vti", vti("Origin=\"1 2 -1\" Spacing=\"0.5 0 2\"", ""))).find("axis y: expected a spacing"),
+    EXPECT_NE(
+        grid_error(x("1 1.5 2 2.5 2.5 3.5 4 4.5 5 5.5")).find("axis x, point 4: expected a coordinate other than"),
+        std::string::npos);
+    EXPECT_NE(grid_error(write("zero.vti", vti("Origin=\"1 2 -1\" Spacing=\"0.5 0 2\"", "")))
+                  .find("axis y: expected a spacing"),
               std::string::npos);
     // Half a unit cannot be told from none beside 1e17.
     EXPECT_NE(grid_error(write("far.vti", vti("Origin=\"1e17 2 -1\" Spacing=\"0.5 1 2\"", ""))).find("another origin"),
               std::string::npos);
-    const std::string turned = grid_error(
-        write("turned.vti", vti(placed + " Direction=\"0 -1 0 1 0 0 0 0 1\"", "")));
+    const std::string turned = grid_error(write("turned.vti", vti(placed + " Direction=\"0 -1 0 1 0 0 0 0 1\"", "")));
     EXPECT_NE(turned.find("turned against the axes"), std::string::npos) << turned;
     Dataset mesh;
     mesh.source = "m";
     EXPECT_THROW(make_grid(mesh, {}), Error);
     // No volume: the reader says so.
-    expect_error(write("flat.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 10 6 1\nORIGIN 0 0 0\n"
-                                   "SPACING 1 1 1\nPOINT_DATA 60\nSCALARS v double\nLOOKUP_TABLE default\n" + numbers(60, true)),
-                 ErrorKind::data, "2 points in each direction");
+    expect_error(
+        write("flat.vtk",
+              "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 10 6 1\nORIGIN 0 0 0\n"
+              "SPACING 1 1 1\nPOINT_DATA 60\nSCALARS v double\nLOOKUP_TABLE default\n" +
+                  numbers(60, true)),
+        ErrorKind::data, "2 points in each direction");
     expect_error(write("short.raw", numbers(59, false)), ErrorKind::format, "60 bytes",
                  {.raw = RawVolume{.dimensions = {10, 3, 2}}});
 }
 
 TEST(Grid, ValidateNamesWhatIsWrong) {
-    const Grid sound{{uniform_axis(0, 1, 2), uniform_axis(0, 1, 3), uniform_axis(0, 1, 2)}, FieldLocation::cells, {1, 2}, {}};
+    const Grid sound{
+        {uniform_axis(0, 1, 2), uniform_axis(0, 1, 3), uniform_axis(0, 1, 2)}, FieldLocation::cells, {1, 2}, {}};
     validate(sound, "hand");
     const auto expect = [&](const std::string& words, auto change) {
         Grid grid = sound;
@@ -202,7 +215,10 @@ TEST(Grid, ValidateNamesWhatIsWrong) {
     };
     expect("axis y: expected at least 2 points", [](Grid& g) { g.axes[1] = uniform_axis(0, 1, 1); });
     expect("axis z: expected coordinates that ascend", [](Grid& g) { g.axes[2] = uniform_axis(0, -1, 2); });
-    expect("axis x, point 1: expected a finite", [](Grid& g) { g.axes[0].coordinates[1] = nan; g.axes[0].spacing.reset(); });
+    expect("axis x, point 1: expected a finite", [](Grid& g) {
+        g.axes[0].coordinates[1] = nan;
+        g.axes[0].spacing.reset();
+    });
     expect("2 values", [](Grid& g) { g.values.push_back(3); });
     expect("a mark for each", [](Grid& g) { g.blanked = {1}; });
     expect("cell 1: expected finite", [](Grid& g) { g.values[1] = nan; });
@@ -231,8 +247,8 @@ class SharedGrids : public ReadSharedData {};
 
 TEST_F(SharedGrids, TheGridIsThatOfTheTetrahedra) {
     std::size_t uneven = 0;
-    for (const char* name : {"volumes/hydrogen.vti", "volumes/RectGrid2.vtk", "volumes/neghip.slc", "volumes/HeadMRVolume.mhd",
-                             "volumes/nrrd/BallBinary30x30x30_gz.nrrd"}) {
+    for (const char* name : {"volumes/hydrogen.vti", "volumes/RectGrid2.vtk", "volumes/neghip.slc",
+                             "volumes/HeadMRVolume.mhd", "volumes/nrrd/BallBinary30x30x30_gz.nrrd"}) {
         SCOPED_TRACE(name);
         const Dataset dataset = read(data / name);
         ASSERT_TRUE(dataset.boxes);
