@@ -171,16 +171,18 @@ TEST(CellTemplate, CountsOfFigure1InEverySymmetricView) {
     }
 }
 
+// Up to four units in the last place from x; 1e-16 of them from 0.
+double beside(std::mt19937_64& random, double x) {
+    const int n = std::uniform_int_distribution<int>(-4, 4)(random);
+    if (x == 0) return n * 1e-16;
+    for (int i = 0; i < std::abs(n); ++i)
+        x = std::nextafter(x, n > 0 ? 1e300 : -1e300);
+    return x;
+}
+
 // A few units in the last place beside every symmetric view: other classes, the same picture.
 TEST(CellTemplate, BesideEverySymmetricView) {
     std::mt19937_64 random(201);
-    std::uniform_int_distribution<int> steps(-4, 4);
-    const auto nudge = [&](double x) {
-        const int n = steps(random);
-        for (int i = 0; i < std::abs(n); ++i)
-            x = std::nextafter(x, n > 0 ? 1e300 : -1e300);
-        return x == 0.0 || std::abs(x) > 1e-300 ? x : n * 1e-16;  // beside 0: faces almost edge-on
-    };
     std::array<int, 8> counts{};
     for_lattice(-2, 2, [&](const std::array<int, 3>& d) {
         if (d == std::array{0, 0, 0}) return;
@@ -188,8 +190,8 @@ TEST(CellTemplate, BesideEverySymmetricView) {
             for (int trial = 0; trial < 3; ++trial) {
                 glm::dvec3 direction = vector(d), edges = vector(h);
                 for (int i = 0; i < 3; ++i) {
-                    direction[i] = nudge(direction[i]);
-                    edges[i] = nudge(edges[i]);
+                    direction[i] = beside(random, direction[i]);
+                    edges[i] = beside(random, edges[i]);
                 }
                 ASSERT_NO_FATAL_FAILURE(expect_parallel(direction, edges));
                 ++counts[parallel_template(direction, edges).polygon_count];
@@ -285,6 +287,30 @@ TEST(CellTemplate, PerspectiveFromEveryLatticePoint) {
         EXPECT_GT(seen[2][polygons], 0);
     for (const std::size_t polygons : {6U, 7U})
         EXPECT_GT(seen[3][polygons], 0);
+}
+
+TEST(CellTemplate, PerspectiveBesideEveryLatticePoint) {
+    std::mt19937_64 random(205);
+    std::array<int, 8> counts{};
+    for_lattice(1, 3, [&](const std::array<int, 3>& h) {
+        for_lattice(-4, 6, [&](const std::array<int, 3>& e) {
+            glm::dvec3 eye = vector(e);
+            Bounds cell = box(vector(h));
+            for (int i = 0; i < 3; ++i) {
+                eye[i] = beside(random, eye[i]);
+                cell.low[i] = beside(random, cell.low[i]);
+                cell.high[i] = beside(random, cell.high[i]);
+            }
+            const Plane plane(eye - cell.center(), eye);
+            for (unsigned c = 0; c < 8; ++c) {
+                if (plane.depth_of(corner(cell, c)) < 0.2) return;
+            }
+            ASSERT_NO_FATAL_FAILURE(expect_perspective(eye, cell, plane));
+            ++counts[perspective_template(eye, cell).polygon_count];
+        });
+    });
+    for (const std::size_t polygons : {3U, 4U, 5U, 6U, 7U})
+        EXPECT_GT(counts[polygons], 0);
 }
 
 TEST(CellTemplate, PerspectiveOfTenThousandRandomCells) {
