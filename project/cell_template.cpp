@@ -163,16 +163,8 @@ private:
 // ---- One, two and three visible faces; a, b, c are axes 0, 1, 2 of the builder ----
 
 void one_face(Builder& build, const AxisView& a, const AxisView& b, const AxisView& c) {
-    enum Slot : std::size_t {
-        s00,
-        s10,
-        s11,
-        s01,
-        f00,
-        f10,
-        f11,
-        f01
-    };  // b, c of the corners of the front and back face
+    // The corners of the front and of the back face, by their b and c.
+    enum Slot : std::size_t { s00, s10, s11, s01, f00, f10, f11, f01 };
     const std::array<double, 2> eb = entries(a, b), ec = entries(a, c);
     build.corner(s00, {0, 0, 0});
     build.corner(s10, {0, 1, 0});
