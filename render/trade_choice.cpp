@@ -76,8 +76,9 @@ QualityChoice choose_quality(Renderer& renderer, const Scene& scene, const Camer
     QualityChoice choice;
     choice.sample = choice.judged = even.size();
     for (const Method& method : choice_methods(max_error)) {
-        choice.candidates.push_back({options.base, {}, 0});
-        choice.candidates.back().quality.method = method;
+        Quality quality = options.base;
+        quality.method = method;
+        if (!options.draws || options.draws(quality)) choice.candidates.push_back({quality, {}, 0});
     }
     const Image best = renderer.render(scene, camera, size, choice.candidates.back().quality);
     const auto others = std::span(choice.candidates).first(choice.candidates.size() - 1);

@@ -87,7 +87,23 @@ TEST_F(CommandLine, StatisticsHaveTheirKeys) {
     }
     EXPECT_GT(picture.at("ms").at("total"), 0.0);
     EXPECT_GT(json.at("peak_memory_bytes"), 1'000'000);
-    EXPECT_EQ(picture.at("backend"), "gl_osmesa");
+    EXPECT_EQ(picture.at("backend"), "cpu");
+}
+
+TEST_F(CommandLine, TheBackendIsChosenAndTold) {
+    const auto backend_of = [&](const std::string& options) {
+        const Outcome outcome = run("render cube.vtk -o cube.png --size 20x20 --stats stats.json " + options);
+        EXPECT_EQ(outcome.code, 0) << outcome.text;
+        std::ifstream stream(path("stats.json"));
+        return nlohmann::json::parse(stream).at("pictures").at(0).at("backend").get<std::string>();
+    };
+    EXPECT_EQ(backend_of(""), "cpu");
+    EXPECT_EQ(backend_of("--backend cpu --threads 1 --order pixel"), "cpu");
+    EXPECT_EQ(backend_of("--backend gl"), "gl_osmesa");
+    EXPECT_EQ(backend_of("--method shirley-tuchman"), "gl_osmesa");  // which only it draws
+    expect_refused("render cube.vtk -o x.png --backend cpu --method shirley-tuchman", {"--method", "--backend gl"});
+    expect_refused("render cube.vtk -o x.png --backend gl --order pixel", {"--order", "--backend cpu"});
+    expect_refused("render cube.vtk -o x.png --backend cpu --target rgba8", {"--target", "rgba32f"});
 }
 
 TEST_F(CommandLine, TheOrderIsChosenProvenAndDoubtedAloud) {
