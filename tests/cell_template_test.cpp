@@ -254,7 +254,7 @@ TEST(CellTemplate, PerspectiveFromEveryLatticePoint) {
     std::array<std::array<int, 8>, 4> seen{};  // [visible faces][polygons]
     for_lattice(1, 3, [&](const std::array<int, 3>& h) {
         const Bounds cell = box(vector(h));
-        for_lattice(-5, 8, [&](const std::array<int, 3>& e) {
+        for_lattice(-4, 6, [&](const std::array<int, 3>& e) {
             const glm::dvec3 eye = vector(e);
             const CellTemplate shape = perspective_template(eye, cell);
             std::array<int, 3> near{};  // distances from the faces in front, 0 where none is
