@@ -3,13 +3,13 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 #include <glm/geometric.hpp>
 
@@ -25,6 +25,11 @@ using Relations = CellGraph::Relations;
 // Room for as many raised labels between two keys. The largest key leaves the upper half of the numbers free.
 constexpr int label_bits = 31;
 constexpr int spacing_bits = label_bits - key_bits;
+
+// New labels are due when as many as one of this number of cells have been raised: by then a step costs as much as its share in them.
+constexpr std::size_t wear = 3;
+
+constexpr std::size_t block = 1024;  // cells whose relations are renewed at a time
 
 constexpr std::uint16_t never = 0xffff;
 // When the clock is set back.
@@ -45,6 +50,34 @@ void for_each_part(std::size_t count, Body body) {
     });
 }
 
+// A stable radix sort of a few thousand elements, on this core.
+template <class Element, class LabelOf>
+void sort_by_digits(std::vector<Element>& elements, LabelOf label_of) {
+    constexpr int bits = 11;
+    constexpr std::uint32_t digits = 1U << bits;
+    std::vector<Element> sorted(elements.size());
+    std::vector<std::uint32_t> place(digits);
+    for (int shift = 0; shift < 32; shift += bits) {
+        std::fill(place.begin(), place.end(), 0U);
+        for (const Element& e : elements) ++place[label_of(e) >> shift & (digits - 1)];
+        std::exclusive_scan(place.begin(), place.end(), place.begin(), 0U);
+        for (const Element& e : elements) sorted[place[label_of(e) >> shift & (digits - 1)]++] = e;
+        elements.swap(sorted);
+    }
+}
+
+// The first place from `begin` on where `ascending` is at least `value`, found in steps that double.
+std::size_t first_at_least(const std::vector<std::uint32_t>& ascending, std::size_t begin, std::uint32_t value) {
+    std::size_t step = 1, low = begin;
+    while (low + step < ascending.size() && ascending[low + step] < value) {
+        low += step;
+        step *= 2;
+    }
+    const auto first = ascending.begin() + static_cast<std::ptrdiff_t>(low);
+    const auto last = ascending.begin() + static_cast<std::ptrdiff_t>(std::min(low + step + 1, ascending.size()));
+    return static_cast<std::size_t>(std::lower_bound(first, last, value) - ascending.begin());
+}
+
 void spread_keys(std::vector<std::uint32_t>& keys) {
     oneapi::tbb::parallel_for(Range(0, keys.size(), 4096), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) keys[i] <<= spacing_bits;
@@ -58,31 +91,14 @@ bool CoherentOrder::start(const CellGraph& graph, const Eye& eye) {
     const std::size_t count = graph.size();
     eye_ = graph.scaled(eye);
     if (count > std::size_t{1} << (label_bits - 1) || !(glm::length(eye_) < farthest_eye)) return false;
-    {
-        KeySort keys;
-        find_centroid_keys(graph, eye, {}, keys.keys(count));
-        keys.sort();
-        label_ = keys.take_keys();
-        cells_ = keys.take_sorted();
-    }
-    spread_keys(label_);
-    sorted_labels_.resize(count);
-    oneapi::tbb::parallel_for(Range(0, count, 4096), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            sorted_labels_[i] = label_[cells_[i]];
-            cells_[i] = graph.cell(cells_[i]);
-        }
-    });
     unit_ = std::max(1.0, glm::length(eye_)) / units_per_distance;
+    label_by_depth(graph, eye);
     relations_.assign(count, 0);
     expiry_.assign(count, 0);
     moving_.assign(count / 64 + 1, 0);
-    budget_ = count / 2 + 64;
-    const bool done = bring_up_to(graph, eye);
-    raised_ = 0;
-    budget_ = count / 4 + 64;
-    if (!done) release();
-    return done;
+    if (bring_up_to(graph, eye, Asked::all_relations)) return true;
+    release();
+    return false;
 }
 
 bool CoherentOrder::follow(const CellGraph& graph, const Eye& eye) {
@@ -91,7 +107,30 @@ bool CoherentOrder::follow(const CellGraph& graph, const Eye& eye) {
     // The last terms: both ends are rounded.
     advance_clock((glm::distance(eye_, now) + 1e-15 * (1 + glm::length(now))) * (1 + 1e-12));
     eye_ = now;
-    return bring_up_to(graph, eye) || start(graph, eye);
+    const bool worn_out = raised_ > graph.size() / wear;
+    if (worn_out) label_by_depth(graph, eye);
+    return bring_up_to(graph, eye, worn_out ? Asked::all_relations : Asked::new_relations) || start(graph, eye);
+}
+
+void CoherentOrder::label_by_depth(const CellGraph& graph, const Eye& eye) {
+    label_ = {};
+    cells_ = {};
+    sorted_labels_ = {};
+    {
+        KeySort keys;
+        find_centroid_keys(graph, eye, {}, keys.keys(graph.size()));
+        keys.sort();
+        label_ = keys.take_keys();
+        cells_ = keys.take_sorted();
+    }
+    spread_keys(label_);
+    sorted_labels_.resize(graph.size());
+    oneapi::tbb::parallel_for(Range(0, graph.size(), 4096), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            sorted_labels_[i] = label_[cells_[i]];
+            cells_[i] = graph.cell(cells_[i]);
+        }
+    });
 }
 
 void CoherentOrder::advance_clock(double distance) {
@@ -107,111 +146,147 @@ void CoherentOrder::advance_clock(double distance) {
 }
 
 // The three parts: signs, labels, order.
-bool CoherentOrder::bring_up_to(const CellGraph& graph, const Eye& eye) {
-    const std::vector<CellId> wrong = find_wrong(graph, eye);
-    std::vector<Move> moves;
-    if (!raise(graph, wrong, moves)) return false;
-    move_cells(graph, moves);
+bool CoherentOrder::bring_up_to(const CellGraph& graph, const Eye& eye, Asked asked) {
+    const std::vector<Claim> claims = find_claims(graph, eye, asked);
+    std::vector<Claim> raised;
+    if (!raise(graph, claims, raised)) return false;
+    if (asked == Asked::all_relations) raised_ = 0;
+    move_cells(graph, raised);
     return true;
 }
 
-// Brings the relations up to date. Returns the places of the cells that a cell newly in front of them has no larger label than.
-std::vector<CellId> CoherentOrder::find_wrong(const CellGraph& graph, const Eye& eye) {
+// Brings the relations up to date. Returns the labels that they (or only those that are new) find too small.
+std::vector<CoherentOrder::Claim> CoherentOrder::find_claims(const CellGraph& graph, const Eye& eye, Asked asked) {
     const auto now = static_cast<std::uint16_t>(std::ceil(clock_));
-    std::array<std::vector<CellId>, parts> wrong;
+    std::array<std::vector<Claim>, parts> claims;
     for_each_part(graph.size(), [&](std::size_t part, std::size_t begin, std::size_t end) {
-        constexpr std::size_t block = 1024;
+        std::vector<Claim>* const of_new = asked == Asked::new_relations ? &claims[part] : nullptr;
         std::array<CellId, 2 * block> stale;
-        std::array<Relations, block> relations;
-        std::array<float, block> reach;
         std::size_t waiting = 0;
-        const auto renew = [&](std::size_t count) {
-            graph.find_relations(eye, {stale.data(), count}, {relations.data(), count}, {reach.data(), count});
-            for (std::size_t k = 0; k < count; ++k) {
-                const CellId place = stale[k];
-                const double until = std::min(clock_ + reach[k] / unit_, static_cast<double>(never));
-                expiry_[place] = static_cast<std::uint16_t>(until);
-                unsigned fresh = relations[k] & CellGraph::in_front & ~relations_[place];
-                relations_[place] = relations[k];
-                for (; fresh != 0; fresh &= fresh - 1) {
-                    const CellId front = graph.neighbours(place)[static_cast<std::size_t>(std::countr_zero(fresh))];
-                    if (label_[front] > label_[place]) continue;
-                    wrong[part].push_back(place);
-                    break;
-                }
-            }
-        };
+        const std::uint16_t* const expiry = expiry_.data();
         for (std::size_t from = begin; from < end; from += block) {
             const std::size_t to = std::min(from + block, end);
+            std::size_t count = waiting;
             for (std::size_t i = from; i < to; ++i) {
-                stale[waiting] = static_cast<CellId>(i);
-                waiting += expiry_[i] <= now ? 1 : 0;
+                stale[count] = static_cast<CellId>(i);
+                count += expiry[i] <= now ? 1 : 0;
             }
+            waiting = count;
             if (waiting < block) continue;
-            renew(block);
+            renew_relations(graph, eye, {stale.data(), block}, of_new);
             std::copy(stale.begin() + block, stale.begin() + static_cast<std::ptrdiff_t>(waiting), stale.begin());
             waiting -= block;
         }
-        renew(waiting);
+        renew_relations(graph, eye, {stale.data(), waiting}, of_new);
+        if (asked == Asked::new_relations) return;
+        for (std::size_t i = begin; i < end; ++i) {
+            claim(graph, static_cast<CellId>(i), relations_[i] & CellGraph::in_front, claims[part]);
+        }
     });
-    std::vector<CellId> all;
-    for (const auto& found : wrong) all.insert(all.end(), found.begin(), found.end());
+    std::vector<Claim> all;
+    for (const auto& found : claims) all.insert(all.end(), found.begin(), found.end());
     return all;
 }
 
-// The least labels that fit do not depend on the order of the steps.
-bool CoherentOrder::raise(const CellGraph& graph, std::span<const CellId> behind, std::vector<Move>& moves) {
+void CoherentOrder::renew_relations(const CellGraph& graph, const Eye& eye, std::span<const CellId> places, std::vector<Claim>* claims) {
+    std::array<Relations, block> relations;
+    std::array<float, block> reach;
+    graph.find_relations(eye, places, {relations.data(), places.size()}, {reach.data(), places.size()});
+    const double per_unit = (1 - 1e-15) / unit_;  // rounded down
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const CellId place = places[k];
+        const double until = std::min(clock_ + static_cast<double>(reach[k]) * per_unit, static_cast<double>(never));
+        expiry_[place] = static_cast<std::uint16_t>(static_cast<int>(until));
+        const unsigned fresh = relations[k] & CellGraph::in_front & ~relations_[place];
+        relations_[place] = relations[k];
+        if (claims) claim(graph, place, fresh, *claims);
+    }
+}
+
+void CoherentOrder::claim(const CellGraph& graph, CellId place, unsigned faces, std::vector<Claim>& claims) const {
+    for (; faces != 0; faces &= faces - 1) {
+        const CellId front = graph.neighbours(place)[static_cast<std::size_t>(std::countr_zero(faces))];
+        if (label_[front] <= label_[place]) claims.push_back({front, label_[place] + 1});
+    }
+}
+
+// The least labels that fit do not depend on the order of the steps. `raised`: each cell once, with the label it had.
+bool CoherentOrder::raise(const CellGraph& graph, std::span<const Claim> claims, std::vector<Claim>& raised) {
+    constexpr std::size_t ahead = 8;  // claims, about the time that memory takes to answer
+    const std::size_t most = raised_ + graph.size() / 2 + 64;
     std::vector<CellId> open;
-    for (const CellId first : behind) {
-        open.push_back(first);
+    const auto lift = [&](CellId place, std::uint32_t label) {
+        const CellId cell = graph.cell(place);
+        if ((moving_[cell / 64] >> (cell % 64) & 1) == 0) {
+            moving_[cell / 64] |= std::uint64_t{1} << (cell % 64);
+            raised.push_back({place, label_[place]});
+        }
+        label_[place] = label;
+        ++raised_;
+        open.push_back(place);
+    };
+    for (std::size_t i = 0; i < claims.size(); ++i) {
+        const CellId next = claims[std::min(i + ahead, claims.size() - 1)].place;
+        __builtin_prefetch(&label_[next]);
+        __builtin_prefetch(&relations_[next]);
+        __builtin_prefetch(&graph.neighbours(next));
+        if (label_[claims[i].place] < claims[i].label) lift(claims[i].place, claims[i].label);
         while (!open.empty()) {
             const CellId place = open.back();
             open.pop_back();
-            const std::uint32_t label = label_[place];
+            const std::uint32_t above = label_[place] + 1;
             for (unsigned faces = relations_[place] & CellGraph::in_front; faces != 0; faces &= faces - 1) {
                 const CellId front = graph.neighbours(place)[static_cast<std::size_t>(std::countr_zero(faces))];
-                if (label_[front] > label) continue;
-                const CellId cell = graph.cell(front);
-                if ((moving_[cell / 64] >> (cell % 64) & 1) == 0) {
-                    moving_[cell / 64] |= std::uint64_t{1} << (cell % 64);
-                    moves.push_back({label_[front], 0, front});
-                }
-                label_[front] = label + 1;
-                open.push_back(front);
-                if (++raised_ > budget_) return false;
+                if (label_[front] < above) lift(front, above);
             }
+            if (raised_ > most) return false;
         }
     }
-    for (Move& move : moves) move.to = label_[move.place];
-    oneapi::tbb::parallel_sort(moves.begin(), moves.end(),
-                               [](const Move& a, const Move& b) { return a.to != b.to ? a.to < b.to : a.place < b.place; });
     return true;
 }
 
-// In place: a label only grows, so a cell goes to where there is room since it was taken out.
-void CoherentOrder::move_cells(const CellGraph& graph, std::span<const Move> moves) {
-    if (moves.empty()) return;
-    std::uint32_t first = moves.front().from;
-    for (const Move& move : moves) first = std::min(first, move.from);
+// Two lists that ascend, of cells to take out and cells to put in, and runs of cells between them that move on as they are. All in place: a label
+// only grows, so a cell goes to where there is room since it was taken out.
+void CoherentOrder::move_cells(const CellGraph& graph, std::span<const Claim> raised) {
+    if (raised.empty()) return;
+    std::vector<std::uint32_t> taken(raised.size());
+    std::vector<Claim> put(raised.size());
+    for (std::size_t i = 0; i < raised.size(); ++i) {
+        taken[i] = raised[i].label;
+        put[i] = {raised[i].place, label_[raised[i].place]};
+    }
+    sort_by_digits(taken, [](std::uint32_t label) { return label; });
+    sort_by_digits(put, [](const Claim& claim) { return claim.label; });
 
+    const std::size_t count = sorted_labels_.size();
     std::uint32_t* const labels = sorted_labels_.data();
     CellId* const cells = cells_.data();
-    std::size_t in = static_cast<std::size_t>(std::lower_bound(sorted_labels_.begin(), sorted_labels_.end(), first) - sorted_labels_.begin());
-    std::size_t out = in;
-    for (const Move& move : moves) {
-        while (in < sorted_labels_.size() && labels[in] <= move.to) {
-            const CellId cell = cells[in];
-            labels[out] = labels[in++];
-            cells[out] = cell;
-            out += ~(moving_[cell / 64] >> (cell % 64)) & 1U;
+    std::size_t in = first_at_least(sorted_labels_, 0, taken.front()), out = in;
+    const auto move_run = [&](std::size_t end) {
+        std::copy(labels + in, labels + end, labels + out);
+        std::copy(cells + in, cells + end, cells + out);
+        out += end - in;
+        in = end;
+    };
+    std::size_t next = 0;
+    for (const Claim& claim : put) {
+        for (; next < taken.size() && taken[next] <= claim.label; ++next) {
+            move_run(first_at_least(sorted_labels_, in, taken[next]));
+            for (; in < count && labels[in] == taken[next]; ++in) {  // those of one label, of which some go
+                const CellId cell = cells[in];
+                labels[out] = labels[in];
+                cells[out] = cell;
+                out += ~(moving_[cell / 64] >> (cell % 64)) & 1U;
+            }
         }
+        move_run(first_at_least(sorted_labels_, in, claim.label + 1));
         assert(out < in);
-        labels[out] = move.to;
-        cells[out++] = graph.cell(move.place);
+        labels[out] = claim.label;
+        cells[out++] = graph.cell(claim.place);
     }
-    assert(out == in);  // the last label to grow is beyond all that cells were taken out from
-    for (const Move& move : moves) {
-        const CellId cell = graph.cell(move.place);
+    assert(out == in);  // the largest new label is beyond all that cells were taken out from
+    for (const Claim& claim : put) {
+        const CellId cell = graph.cell(claim.place);
         moving_[cell / 64] &= ~(std::uint64_t{1} << (cell % 64));
     }
 }
