@@ -291,9 +291,11 @@ void CellGraph::relate(const View& view, std::size_t count, PlaceOf place_of, Ta
     float ux[n], uy[n], uz[n], vx[n], vy[n], vz[n], wx[n], wy[n], wz[n], rx[n], ry[n], rz[n];
     std::uint8_t positive[n], negative[n];
     [[maybe_unused]] float reach[n];
+    [[maybe_unused]] constexpr std::size_t ahead = 16;  // cells, about the time that memory takes to answer
     const float origin = view.at_infinity ? 0.0F : 1.0F;
     for (std::size_t k = 0; k < count; ++k) {
         const auto& corner = corners_[place_of(k)];
+        if constexpr (with_reach) __builtin_prefetch(&corners_[place_of(std::min(k + ahead, count - 1))]);
         const Point a = points_[corner[0]], b = points_[corner[1]], c = points_[corner[2]], d = points_[corner[3]];
         ux[k] = b.x - a.x, uy[k] = b.y - a.y, uz[k] = b.z - a.z;
         vx[k] = c.x - a.x, vy[k] = c.y - a.y, vz[k] = c.z - a.z;

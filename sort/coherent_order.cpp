@@ -191,6 +191,12 @@ std::vector<CoherentOrder::Claim> CoherentOrder::find_claims(const CellGraph& gr
 void CoherentOrder::renew_relations(const CellGraph& graph, const Eye& eye, std::span<const CellId> places, std::vector<Claim>* claims) {
     std::array<Relations, block> relations;
     std::array<float, block> reach;
+    struct Change {
+        CellId place;
+        unsigned faces;
+    };
+    std::array<Change, block> changed;
+    std::size_t changes = 0;
     graph.find_relations(eye, places, {relations.data(), places.size()}, {reach.data(), places.size()});
     const double per_unit = (1 - 1e-15) / unit_;  // rounded down
     for (std::size_t k = 0; k < places.size(); ++k) {
@@ -199,8 +205,12 @@ void CoherentOrder::renew_relations(const CellGraph& graph, const Eye& eye, std:
         expiry_[place] = static_cast<std::uint16_t>(static_cast<int>(until));
         const unsigned fresh = relations[k] & CellGraph::in_front & ~relations_[place];
         relations_[place] = relations[k];
-        if (claims) claim(graph, place, fresh, *claims);
+        if (!claims || fresh == 0) continue;
+        changed[changes++] = {place, fresh};
+        __builtin_prefetch(&graph.neighbours(place));
+        __builtin_prefetch(&label_[place]);
     }
+    for (std::size_t i = 0; i < changes; ++i) claim(graph, changed[i].place, changed[i].faces, *claims);
 }
 
 void CoherentOrder::claim(const CellGraph& graph, CellId place, unsigned faces, std::vector<Claim>& claims) const {
