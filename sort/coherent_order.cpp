@@ -113,9 +113,7 @@ bool CoherentOrder::follow(const CellGraph& graph, const Eye& eye) {
 }
 
 void CoherentOrder::label_by_depth(const CellGraph& graph, const Eye& eye) {
-    label_ = {};
-    cells_ = {};
-    sorted_labels_ = {};
+    for (auto* last : {&label_, &cells_, &sorted_labels_}) std::vector<std::uint32_t>().swap(*last);  // frees; `= {}` would not
     {
         KeySort keys;
         find_centroid_keys(graph, eye, {}, keys.keys(graph.size()));
@@ -147,9 +145,8 @@ void CoherentOrder::advance_clock(double distance) {
 
 // The three parts: signs, labels, order.
 bool CoherentOrder::bring_up_to(const CellGraph& graph, const Eye& eye, Asked asked) {
-    const std::vector<Claim> claims = find_claims(graph, eye, asked);
     std::vector<Claim> raised;
-    if (!raise(graph, claims, raised)) return false;
+    if (!raise(graph, find_claims(graph, eye, asked), raised)) return false;
     if (asked == Asked::all_relations) raised_ = 0;
     move_cells(graph, raised);
     return true;
@@ -183,7 +180,10 @@ std::vector<CoherentOrder::Claim> CoherentOrder::find_claims(const CellGraph& gr
             claim(graph, static_cast<CellId>(i), relations_[i] & CellGraph::in_front, claims[part]);
         }
     });
+    std::size_t count = 0;
+    for (const auto& found : claims) count += found.size();
     std::vector<Claim> all;
+    all.reserve(count);
     for (const auto& found : claims) all.insert(all.end(), found.begin(), found.end());
     return all;
 }

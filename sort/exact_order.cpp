@@ -37,9 +37,9 @@ std::vector<OrderArc> ExactOrder::arcs_across(const CellGraph& graph, const Eye&
 }
 
 void ExactOrder::release_order() {
-    places_ = {};
-    items_ = {};
-    pieces_ = {};
+    std::vector<CellId>().swap(places_);  // frees; `= {}` would not
+    std::vector<std::uint32_t>().swap(items_);
+    std::vector<CellPiece>().swap(pieces_);
 }
 
 ViewOrder ExactOrder::order(const CellGraph& graph, TopologicalSort& topological, const Eye& eye, const PixelGrid* pixels,

@@ -72,12 +72,14 @@ struct VisibilitySorter::State {
 
     bool is_delaunay();
     void make_room_for(OrderMethod method);
+    void free_items() { std::vector<std::uint32_t>().swap(items); }  // `items = {}` would not
     std::span<const CellId> order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible);
     std::span<const CellId> order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible, OrderReport& report);
     std::span<const CellId> order_by_relations(const Eye& eye, OrderReport& report);
     std::span<const CellId> order_of_convex(const Eye& eye);
     bool order_coherently(const Eye& eye);
     bool close_to_last(const Eye& eye) const;
+    ViewOrder only_visible(const ViewOrder& order, std::span<const std::uint8_t> visible);
     ViewOrder order_exactly(const Eye& eye, const PixelGrid* pixels, OrderReport& report);
     std::span<const CellId> in_callers_numbers(std::span<const CellId> places);
 };
@@ -102,10 +104,11 @@ ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::opti
     found.method = method.value_or(state_->convex ? OrderMethod::mpvo : OrderMethod::sxmpvo);
     if (found.method == OrderMethod::sxmpvo && !pixels) found.method = OrderMethod::bsp;
     state_->make_room_for(found.method);
+    if (found.method != OrderMethod::power) state_->powers.reset();  // stay where they only find that mpvo must take over
     if (found.method == OrderMethod::bsp || found.method == OrderMethod::sxmpvo) {
         const ViewOrder order = state_->order_exactly(eye, pixels, found);
         if (report) *report = found;
-        return order;
+        return state_->only_visible(order, visible);
     }
     const auto cells = found.method == OrderMethod::centroid ? state_->order_by_centroids(eye, visible)
                        : found.method == OrderMethod::power  ? state_->order_by_powers(eye, visible, found)
@@ -114,7 +117,8 @@ ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::opti
     const bool has_cycles = found.method == OrderMethod::mpvo && state_->convex && cells.size() < state_->graph.size();
     const ViewOrder order = has_cycles ? state_->order_exactly(eye, nullptr, found) : ViewOrder{cells, {}};
     if (report) *report = found;
-    return order;
+    const bool by_keys = found.method == OrderMethod::centroid || found.method == OrderMethod::power;  // which leave out what is not visible
+    return by_keys ? order : state_->only_visible(order, visible);
 }
 
 // Each method has its memory to itself: what others keep for their next view goes.
@@ -127,7 +131,21 @@ void VisibilitySorter::State::make_room_for(OrderMethod method) {
     } else {
         key_sort.release();
     }
-    if (method != OrderMethod::bsp && method != OrderMethod::sxmpvo) exact.release_order();
+    const bool exactly = method == OrderMethod::bsp || method == OrderMethod::sxmpvo;
+    if (!exactly) exact.release_order();
+    if (method == OrderMethod::centroid) free_items();
+}
+
+ViewOrder VisibilitySorter::State::only_visible(const ViewOrder& order, std::span<const std::uint8_t> visible) {
+    if (std::find(visible.begin(), visible.end(), std::uint8_t{0}) == visible.end()) return order;
+    const std::size_t cells = graph.size();
+    std::size_t count = 0;
+    if (items.size() < order.items.size()) items.resize(order.items.size());  // else `order` may stand in it, and ends not later
+    for (const std::uint32_t item : order.items) {
+        items[count] = item;
+        count += visible[item < cells ? item : order.pieces[item - cells].cell] != 0 ? 1 : 0;
+    }
+    return {std::span(items).first(count), order.pieces};
 }
 
 ViewOrder VisibilitySorter::State::order_exactly(const Eye& eye, const PixelGrid* pixels, OrderReport& report) {
@@ -189,8 +207,10 @@ bool VisibilitySorter::State::order_coherently(const Eye& eye) {
     const bool close = last_eye && close_to_last(eye);
     if (!close) coherent_fails = false;
     if (!close || coherent_fails) return false;
-    topological.release();
-    items = {};
+    if (coherent.empty()) {
+        topological.release();
+        free_items();
+    }
     coherent_fails = !(coherent.empty() ? coherent.start(graph, eye) : coherent.follow(graph, eye));
     return !coherent_fails;
 }
