@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -45,26 +46,36 @@ double interpolate(const std::array<double, 4>& values, const std::array<double,
 struct Segment {
     double enter, leave;
     ScalarEnds scalars;
+    ScalarEnds opacity;  // of the opacity field, where there is one
 
-    double at(double t) const {
-        if (t <= enter) return scalars.front;
-        if (t >= leave) return scalars.back;
+    ScalarEnds between(double begin, double end, const ScalarEnds& ends) const { return {at(begin, ends), at(end, ends)}; }
+
+private:
+    double at(double t, const ScalarEnds& ends) const {
+        if (t <= enter) return ends.front;
+        if (t >= leave) return ends.back;
         const double share = (t - enter) / (leave - enter);
-        return (1.0 - share) * scalars.front + share * scalars.back;
+        return (1.0 - share) * ends.front + share * ends.back;
     }
 };
+
+// A field where the ray enters and leaves a cell; nothing where a value is not finite.
+std::optional<ScalarEnds> ends_of(const ScalarField& field, const TetMesh& mesh, const Crossing& crossing) {
+    std::array<double, 4> values;
+    for (int corner = 0; corner < 4; ++corner)
+        values[static_cast<std::size_t>(corner)] = field.at(mesh, crossing.cell, corner);
+    if (!std::ranges::all_of(values, [](double s) { return std::isfinite(s); })) return std::nullopt;
+    return ScalarEnds{interpolate(values, crossing.at_enter), interpolate(values, crossing.at_leave)};
+}
 
 // By ascending `enter`.
 std::vector<Segment> segments(const Scene& scene, const std::vector<Crossing>& crossings) {
     std::vector<Segment> result;
     result.reserve(crossings.size());
     for (const Crossing& crossing : crossings) {
-        std::array<double, 4> values;
-        for (int corner = 0; corner < 4; ++corner)
-            values[static_cast<std::size_t>(corner)] = scene.field->at(*scene.mesh, crossing.cell, corner);
-        if (!std::ranges::all_of(values, [](double s) { return std::isfinite(s); })) continue;
-        result.push_back(
-            {crossing.enter, crossing.leave, {interpolate(values, crossing.at_enter), interpolate(values, crossing.at_leave)}});
+        const auto scalars = ends_of(*scene.field, *scene.mesh, crossing);
+        const auto opacity = scene.opacity_field ? ends_of(*scene.opacity_field, *scene.mesh, crossing) : ScalarEnds{};
+        if (scalars && opacity) result.push_back({crossing.enter, crossing.leave, *scalars, *opacity});
     }
     std::sort(result.begin(), result.end(), [](const Segment& a, const Segment& b) { return a.enter < b.enter; });
     return result;
@@ -146,7 +157,7 @@ Light Reference::light(const ViewRay& ray) const {
     // Between two neighbouring bounds the same segments are there.
     RayLight light(*scene_.transfer);
     std::vector<Segment> here;
-    std::vector<ScalarEnds> media;
+    std::vector<ScalarEnds> media, opacity;
     auto next = along.begin();
     for (std::size_t i = 0; i + 1 < bounds.size() && !light.opaque(); ++i) {
         const double begin = bounds[i], end = bounds[i + 1];
@@ -154,9 +165,12 @@ Light Reference::light(const ViewRay& ray) const {
         while (next != along.end() && next->enter <= begin)
             here.push_back(*next++);
         media.clear();
-        for (const Segment& segment : here)
-            media.push_back({segment.at(begin), segment.at(end)});
-        light.add(media, end - begin);
+        opacity.clear();
+        for (const Segment& segment : here) {
+            media.push_back(segment.between(begin, end, segment.scalars));
+            if (scene_.opacity_field) opacity.push_back(segment.between(begin, end, segment.opacity));
+        }
+        light.add(media, opacity, end - begin);
     }
     return light.light();
 }

@@ -32,7 +32,8 @@ class Renderer {
 public:
     virtual ~Renderer() = default;
 
-    // Does now what the first picture of a scene would do besides drawing; later pictures find it done.
+    // Does now what the first picture of a scene would do besides drawing; later pictures find it done. Throws Error (option) for a
+    // method that cannot read opacity over another field, where the scene has one (takes_opacity_field).
     virtual void prepare(const Scene& scene, const Quality& quality = {}) = 0;
 
     // The associated picture, over nothing: the background is added when it is written. Throws Error (option) for an

@@ -11,14 +11,18 @@
 
 namespace cellproj {
 
-// None of the three may be null; the field must fit the mesh. Do not change them while a renderer may use them.
+// None of the first three may be null; fields must fit the mesh. Do not change them while a renderer may use them.
 struct Scene {
     std::shared_ptr<const TetMesh> mesh;
     std::shared_ptr<const ScalarField> field;
     std::shared_ptr<const TransferFunction> transfer;
+    // Where there is one, extinction is a function of this field, and only colour one of `field`: q = κ(field)·τ(opacity_field) in the
+    // density model, which lifts the restriction of RKE00 Eq. 1 that κ and ρ come from one scalar. Cells where either field is not
+    // finite are left out.
+    std::shared_ptr<const ScalarField> opacity_field = nullptr;
 };
 
-// Throws Error (data) when the field does not fit the mesh or has no finite value.
+// Throws Error (data) when a field does not fit the mesh or has no finite value.
 void validate(const Scene& scene);
 
 }  // namespace cellproj

@@ -76,6 +76,7 @@ QualityChoice choose_quality(Renderer& renderer, const Scene& scene, const Camer
     QualityChoice choice;
     choice.sample = choice.judged = even.size();
     for (const Method& method : choice_methods(max_error)) {
+        if (scene.opacity_field && !takes_opacity_field(method)) continue;
         choice.candidates.push_back({options.base, {}, 0});
         choice.candidates.back().quality.method = method;
     }

@@ -168,6 +168,7 @@ void render_pictures(const RenderOptions& options) {
                     .target = parse_target_format(options.target, "--target"),
                     .order = options.order == "auto" ? std::nullopt : order_method(options.order),
                     .check_rays = options.verify_order ? rays_of_proof : 0};
+    if (!options.scene.opacity_field.empty()) require_takes_opacity_field(quality.method, "--method");
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -194,14 +195,16 @@ void render_pictures(const RenderOptions& options) {
         const Image image = renderer->render(scene, cameras[i], size, quality, &statistics);
         if (i == 0) statistics.error = error;
         const Stopwatch writing;
-        write(image, file, options,
-              {{"Software", "cellproj " CELLPROJ_VERSION},
-               {"cellproj field", scene.field->name},
-               {"cellproj camera", to_json(cameras[i])},
-               {"cellproj method", statistics.method},
-               {"cellproj target", statistics.target},
-               {"cellproj order", statistics.order},
-               {"cellproj backend", statistics.backend + ", " + statistics.backend_version}});
+        std::map<std::string, std::string> text{
+            {"Software", "cellproj " CELLPROJ_VERSION},
+            {"cellproj field", scene.field->name},
+            {"cellproj camera", to_json(cameras[i])},
+            {"cellproj method", statistics.method},
+            {"cellproj target", statistics.target},
+            {"cellproj order", statistics.order},
+            {"cellproj backend", statistics.backend + ", " + statistics.backend_version}};
+        if (scene.opacity_field) text["cellproj opacity field"] = scene.opacity_field->name;
+        write(image, file, options, text);
         statistics.ms.write = writing.ms();
         warn(image, statistics, file);
         print_line(file, statistics);
