@@ -12,8 +12,8 @@ packages=(
     libvtk9-dev
     # exact signs (CGAL's kernels over GMP); the mesher's program: TetGen, and CGAL's repair of surfaces
     libcgal-dev libtet1.5-dev
-    # vectors, threads
-    libglm-dev libtbb-dev
+    # vectors, threads, SIMD for the instruction sets of the machine
+    libglm-dev libtbb-dev libhwy-dev
     # OpenGL without a screen: OSMesa at build and at run time, glad to generate its loader
     libosmesa6-dev libosmesa6 python3-glad
     # pictures, JSON, the command line

@@ -23,6 +23,9 @@ struct Quality {
     Method method = {};                           // how a segment becomes light
     TargetFormat target = TargetFormat::rgba32f;  // what cells are blended in
     std::optional<OrderMethod> order = {};        // how cells are sorted; nothing: exactly for this mesh
+    // CPU backend: each pixel sorts what its ray meets, instead of an order of cells. Exact at pixel centres for any mesh whose cells do
+    // not overlap, cyclic or not; `order` and `check_rays` do not count then.
+    bool order_per_pixel = false;
     std::size_t check_rays = 0;                   // after the frame, for the statistics: rays that judge the order
 };
 
@@ -32,8 +35,8 @@ class Renderer {
 public:
     virtual ~Renderer() = default;
 
-    // Does now what the first picture of a scene would do besides drawing; later pictures find it done. Throws Error (option) for a
-    // method that cannot read opacity over another field, where the scene has one (takes_opacity_field).
+    // Does now what the first picture of a scene would do besides drawing; later pictures find it done. Throws as
+    // `require_drawn`.
     virtual void prepare(const Scene& scene, const Quality& quality = {}) = 0;
 
     // The associated picture, over nothing: the background is added when it is written. Throws Error (option) for an
@@ -43,12 +46,19 @@ public:
 };
 
 enum class Backend {
-    gl_osmesa  // OpenGL 4.5 core on the CPU, off screen: needs no display and no GPU
+    gl_osmesa,  // OpenGL 4.5 core on the CPU, off screen: needs no display and no GPU; draws every method and target
+    cpu         // native: ten times as fast on a machine without a GPU; light for each pixel, rgba32f
 };
 
 struct RendererOptions {
     std::string osmesa_library = "libOSMesa.so.8";  // name or path, loaded when the renderer is made
+    int threads = 0;                                // of the CPU backend, ≥ 0; 0: all that the process may use
 };
+
+// Whether a backend draws pictures of this quality, of a scene with or without an opacity field.
+bool draws(Backend backend, const Quality& quality, FieldsRead fields = FieldsRead::one);
+// Throws Error (option), which says what to do instead, when it does not; so do renderers.
+void require_drawn(Backend backend, const Quality& quality, FieldsRead fields = FieldsRead::one);
 
 // Throws Error (environment) when the backend is not available here; the message names the package to install.
 std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options = {});

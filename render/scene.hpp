@@ -22,6 +22,10 @@ struct Scene {
     std::shared_ptr<const ScalarField> opacity_field = nullptr;
 };
 
+// What colour and extinction are functions of.
+enum class FieldsRead { one, two };
+inline FieldsRead fields_read(const Scene& scene) { return scene.opacity_field ? FieldsRead::two : FieldsRead::one; }
+
 // Throws Error (data) when a field does not fit the mesh or has no finite value.
 void validate(const Scene& scene);
 

@@ -40,6 +40,7 @@ Json picture_json(const Statistics& picture) {
               {"culled", counts.culled},
               {"drawn", counts.drawn},
               {"triangles", counts.triangles},
+              {"fragments", counts.fragments},
               {"unordered", counts.unordered},
               {"cycles", counts.cycles},
               {"split_cells", counts.split_cells},

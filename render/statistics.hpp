@@ -39,7 +39,8 @@ struct Statistics {
         std::size_t cells = 0;      // in the mesh
         std::size_t culled = 0;     // not drawn: invisible, outside the view, between pixel centres, values not finite
         std::size_t drawn = 0;
-        std::size_t triangles = 0;
+        std::size_t triangles = 0;  // OpenGL
+        std::size_t fragments = 0;  // CPU backend: segments that were composited
         std::size_t unordered = 0;  // cells that the sorter could only order by depth
         std::size_t cycles = 0;            // visibility cycles
         std::size_t split_cells = 0;       // cells drawn as pieces, to get out of them
@@ -48,8 +49,8 @@ struct Statistics {
     std::string method;           // of integration: "preint3d:64"
     std::string target;           // format of the framebuffer: "rgba32f"
     std::size_t table_bytes = 0;  // memory of its tables
-    std::string backend;          // "gl_osmesa"
-    std::string backend_version;  // what the driver says of itself
+    std::string backend;          // "gl_osmesa", "cpu"
+    std::string backend_version;  // what the driver says of itself; the instruction set and the threads
     std::string order;            // method of sorting: "mpvo"
     bool order_exact = false;     // proven for this mesh and view
     std::optional<OrderCheck> order_check;  // when it was asked for

@@ -76,9 +76,10 @@ QualityChoice choose_quality(Renderer& renderer, const Scene& scene, const Camer
     QualityChoice choice;
     choice.sample = choice.judged = even.size();
     for (const Method& method : choice_methods(max_error)) {
-        if (scene.opacity_field && !takes_opacity_field(method)) continue;
-        choice.candidates.push_back({options.base, {}, 0});
-        choice.candidates.back().quality.method = method;
+        Quality quality = options.base;
+        quality.method = method;
+        if (fields_read(scene) == FieldsRead::two && !takes_opacity_field(method)) continue;
+        if (!options.draws || options.draws(quality)) choice.candidates.push_back({quality, {}, 0});
     }
     const Image best = renderer.render(scene, camera, size, choice.candidates.back().quality);
     const auto others = std::span(choice.candidates).first(choice.candidates.size() - 1);

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "render/trade.hpp"
@@ -17,6 +18,7 @@ namespace cellproj {
 
 struct ChoiceOptions {
     Quality base = {};           // all but the method
+    std::function<bool(const Quality&)> draws = {};  // whether the renderer can; all, where it is not given
     std::size_t sample = 4096;   // pixels drawn evenly; all that see the mesh where there are no more
     std::size_t suspects = 128;  // pixels judged besides: so many where a method differs from `exact`, for each
     int rounds = 3;              // frames timed of each method that keeps the bound

@@ -63,8 +63,12 @@ struct TopologicalSort::ArcHeads {
     std::vector<OrderArc> arcs;
     std::vector<CellId> fronts;           // ascending
     std::vector<std::uint32_t> waiting;   // per front
+    std::vector<bool> is_behind;          // per cell: it has an arc
 
-    explicit ArcHeads(std::span<const OrderArc> given) : arcs(given.begin(), given.end()) {
+    ArcHeads(std::span<const OrderArc> given, std::size_t cells) : arcs(given.begin(), given.end()) {
+        if (arcs.empty()) return;
+        is_behind.resize(cells);
+        for (const OrderArc& arc : arcs) is_behind[arc.behind] = true;
         std::sort(arcs.begin(), arcs.end(),
                   [](const OrderArc& a, const OrderArc& b) { return a.behind != b.behind ? a.behind < b.behind : a.front < b.front; });
         fronts.reserve(arcs.size());
@@ -98,7 +102,7 @@ std::span<const CellId> TopologicalSort::run(const CellGraph& graph, const Eye& 
     order_.resize(count + 1);
     graph.find_relations(eye, state_);
     state_[count] = out;
-    ArcHeads heads(arcs);
+    ArcHeads heads(arcs, count);
     for (const CellId front : heads.fronts) state_[front] += CellGraph::one_hidden;  // all its arcs count as one
 
     // Local copies: a store of a state, a byte, might otherwise change any of them for all that the compiler knows.
@@ -127,7 +131,7 @@ std::span<const CellId> TopologicalSort::run(const CellGraph& graph, const Eye& 
                 *top = neighbour;
                 top -= static_cast<std::ptrdiff_t>((hidden >> 4) & static_cast<unsigned>(left < CellGraph::one_hidden));
             }
-            if (has_arcs && graph.on_boundary(cell)) {
+            if (has_arcs && heads.is_behind[cell]) {
                 heads.release(cell, [&](CellId front) {
                     state[front] -= CellGraph::one_hidden;
                     if (state[front] < CellGraph::one_hidden) *top-- = front;

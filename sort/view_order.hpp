@@ -25,8 +25,8 @@ enum class OrderMethod {
     centroid,  // by the distance of the centroids: approximate
     power,     // by the power of the eye with respect to the circumspheres: exact for Delaunay meshes
     mpvo,      // by the relations of face neighbours (Williams 1992): exact for convex acyclic meshes
-    bsp,       // mpvo, and a BSP of the boundary (Comba et al. 1999): exact for acyclic meshes
-    sxmpvo     // mpvo, and the boundary scan-converted (Cook et al. 2004): exact at pixel centres
+    bsp,       // mpvo, pairs of boundary faces one behind the other (for the BSP of Comba et al. 1999), cycles cut: exact on all rays
+    sxmpvo     // mpvo, the boundary scan-converted (Cook et al. 2004), cycles cut: exact at pixel centres
 };
 
 // "centroid", "power", … and back; nothing for an unknown name.

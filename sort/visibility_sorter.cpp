@@ -14,6 +14,7 @@
 
 #include "sort/cell_graph.hpp"
 #include "sort/depth_keys.hpp"
+#include "sort/exact_order.hpp"
 #include "sort/mesh_facts.hpp"
 #include "sort/power_keys.hpp"
 #include "sort/topological_sort.hpp"
@@ -63,6 +64,7 @@ struct VisibilitySorter::State {
     std::optional<bool> delaunay;   // once it was asked for
     std::optional<PowerKeys> powers;  // likewise
     std::optional<Eye> last_eye;      // of the order that `topological` holds, if it is whole
+    ExactOrder exact;
     std::vector<std::uint32_t> items;
 
     bool is_delaunay();
@@ -71,11 +73,12 @@ struct VisibilitySorter::State {
     std::span<const CellId> order_by_relations(const Eye& eye, OrderReport& report);
     std::span<const CellId> order_of_convex(const Eye& eye);
     bool close_to_last(const Eye& eye) const;
+    ViewOrder order_exactly(const Eye& eye, const PixelGrid* pixels, OrderReport& report);
     ViewOrder in_callers_numbers(std::span<const CellId> places);
 };
 
 VisibilitySorter::VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency)
-    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .last_eye = {}, .items = {}})) {
+    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .last_eye = {}, .exact = {}, .items = {}})) {
     state_->convex = fills_convex_body(state_->graph);
 }
 
@@ -88,15 +91,29 @@ const CellGraph& VisibilitySorter::graph() const { return state_->graph; }
 Adjacency VisibilitySorter::adjacency() const { return state_->graph.adjacency(); }
 
 ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::optional<OrderMethod> method,
-                                  const PixelGrid* /*pixels*/, std::span<const std::uint8_t> visible) {
+                                  const PixelGrid* pixels, std::span<const std::uint8_t> visible) {
     assert(visible.empty() || visible.size() == state_->graph.size());
     OrderReport found;
-    found.method = method.value_or(OrderMethod::mpvo);
+    found.method = method.value_or(state_->convex ? OrderMethod::mpvo : OrderMethod::sxmpvo);
+    if (found.method == OrderMethod::sxmpvo && !pixels) found.method = OrderMethod::bsp;
+    if (found.method == OrderMethod::bsp || found.method == OrderMethod::sxmpvo) {
+        const ViewOrder order = state_->order_exactly(eye, pixels, found);
+        if (report) *report = found;
+        return order;
+    }
     const auto places = found.method == OrderMethod::centroid ? state_->order_by_centroids(eye, visible)
                         : found.method == OrderMethod::power  ? state_->order_by_powers(eye, visible, found)
                                                               : state_->order_by_relations(eye, found);
+    // A convex body with visibility cycles: cut them.
+    const bool has_cycles = found.method == OrderMethod::mpvo && state_->convex && places.size() < state_->graph.size();
+    const ViewOrder order = has_cycles ? state_->order_exactly(eye, nullptr, found) : state_->in_callers_numbers(places);
     if (report) *report = found;
-    return state_->in_callers_numbers(places);
+    return order;
+}
+
+ViewOrder VisibilitySorter::State::order_exactly(const Eye& eye, const PixelGrid* pixels, OrderReport& report) {
+    last_eye.reset();
+    return exact.order(graph, topological, eye, pixels, report);
 }
 
 bool VisibilitySorter::State::is_delaunay() {
@@ -126,14 +143,14 @@ std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye,
     return all.first(static_cast<std::size_t>(last - places.begin()));
 }
 
-// In a mesh that fills a convex body any topological order will do. Elsewhere, and in cycles, depth has to help.
+// In a mesh that fills a convex body any topological order will do; fewer than all when there are cycles. Elsewhere depth has to help.
 std::span<const CellId> VisibilitySorter::State::order_by_relations(const Eye& eye, OrderReport& report) {
     report.method = OrderMethod::mpvo;
     if (convex) {
         const auto places = order_of_convex(eye);
         report.exact = places.size() == graph.size();
         last_eye = report.exact ? std::optional(eye) : std::nullopt;
-        if (report.exact) return places;
+        return places;
     }
     last_eye.reset();
     return topological.run_by_depth(graph, eye, report.unordered);
@@ -171,8 +188,28 @@ std::size_t VisibilitySorter::count_violations(const ViewOrder& order, const Eye
 
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report) {
     VisibilitySorter sorter(mesh);
-    const ViewOrder order = sorter.order(eye, report);
-    return {order.items.begin(), order.items.end()};
+    OrderReport found;
+    const ViewOrder order = sorter.order(eye, &found);
+    std::vector<CellId> cells;
+    cells.reserve(mesh.tets.size());
+    std::vector<bool> is_there(order.pieces.empty() ? 0 : mesh.tets.size());
+    for (const std::uint32_t item : order.items) {
+        if (item < mesh.tets.size()) {
+            cells.push_back(item);
+            continue;
+        }
+        const CellId cell = order.pieces[item - mesh.tets.size()].cell;
+        if (is_there[cell]) continue;
+        is_there[cell] = true;
+        cells.push_back(cell);
+    }
+    if (!order.pieces.empty()) {
+        found.exact = false;
+        found.unordered += found.split_cells;
+        found.split_cells = 0;
+    }
+    if (report) *report = found;
+    return cells;
 }
 
 std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye) {

@@ -5,10 +5,12 @@
 // Contract. Every cell comes once, farthest first (by a key sort, only the visible ones). The report tells the method that was used and
 // whether the order is proven for this mesh and eye:
 // - mpvo (Williams, "Visibility Ordering Meshed Polyhedra", ACM TOG 11(2), 1992, the sorter behind RKE00 §2): of two cells with a common
-//   face, the one on the eye's side is in front; any topological order of these relations is an order. Proven for meshes that fill a convex
-//   body, where no relations form a cycle. In others, cells that see each other across the outside have no relation: the farthest centroid
+//   face, the one on the eye's side is in front; any topological order of these relations is an order; cells in cycles are cut. Proven for
+//   meshes that fill a convex body. In others, cells that see each other across the outside have no relation: the farthest centroid
 //   of those that are free comes first, which is right almost everywhere.
 // - centroid: by the distance of centroids, never proven.
+// - bsp, sxmpvo: mpvo with the relations across the outside, for all rays or those of `pixels`; cells in cycles are cut. Proven for any mesh
+//   whose cells do not overlap (sort/exact_orders.md).
 #pragma once
 
 #include <cstddef>
@@ -37,7 +39,7 @@ public:
     VisibilitySorter& operator=(VisibilitySorter&&) noexcept;
 
     // Cells from back to front. The spans stay valid until the next call or the end of the sorter. `method`: nothing for one that
-    // is exact for this mesh. `pixels`: what sxmpvo needs. `visible` (#T or empty): cells with 0 are not drawn; they may be left out.
+    // is exact for this mesh. `pixels`: what sxmpvo needs; without it is bsp. `visible` (#T or empty): cells with 0 are not drawn; they may be left out.
     ViewOrder order(const Eye& eye, OrderReport* report = nullptr, std::optional<OrderMethod> method = {},
                     const PixelGrid* pixels = nullptr, std::span<const std::uint8_t> visible = {});
 
@@ -56,7 +58,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// One order of all cells for one eye.
+// One order of all cells for one eye, as wholes: a cell that had to be split comes where its farthest piece would, and is counted as
+// unordered.
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report = nullptr);
 
 // The same count for any adjacency, by the exact predicate alone: every cell positively oriented.

@@ -87,7 +87,23 @@ TEST_F(CommandLine, StatisticsHaveTheirKeys) {
     }
     EXPECT_GT(picture.at("ms").at("total"), 0.0);
     EXPECT_GT(json.at("peak_memory_bytes"), 1'000'000);
-    EXPECT_EQ(picture.at("backend"), "gl_osmesa");
+    EXPECT_EQ(picture.at("backend"), "cpu");
+}
+
+TEST_F(CommandLine, TheBackendIsChosenAndTold) {
+    const auto backend_of = [&](const std::string& options) {
+        const Outcome outcome = run("render cube.vtk -o cube.png --size 20x20 --stats stats.json " + options);
+        EXPECT_EQ(outcome.code, 0) << outcome.text;
+        std::ifstream stream(path("stats.json"));
+        return nlohmann::json::parse(stream).at("pictures").at(0).at("backend").get<std::string>();
+    };
+    EXPECT_EQ(backend_of(""), "cpu");
+    EXPECT_EQ(backend_of("--backend cpu --threads 1 --order pixel"), "cpu");
+    EXPECT_EQ(backend_of("--backend gl"), "gl_osmesa");
+    EXPECT_EQ(backend_of("--method shirley-tuchman"), "gl_osmesa");  // which only it draws
+    expect_refused("render cube.vtk -o x.png --backend cpu --method shirley-tuchman", {"--method", "--backend gl"});
+    expect_refused("render cube.vtk -o x.png --backend gl --order pixel", {"--order", "--backend cpu"});
+    expect_refused("render cube.vtk -o x.png --backend cpu --target rgba8", {"--target", "rgba32f"});
 }
 
 TEST_F(CommandLine, TheOrderIsChosenProvenAndDoubtedAloud) {
@@ -127,6 +143,7 @@ TEST_F(CommandLine, OpacityFromAnotherField) {
     EXPECT_EQ(run("render cube.vtk -o two.png --size 20x20 --field p --opacity-field rank --max-error .01").code, 0);
     expect_refused("render cube.vtk -o x.png --opacity-field q", {"\"q\"", "p"});
     expect_refused("render cube.vtk -o x.png --opacity-field U --method preint3d:32", {"--method", "preint3d:32", "integral"});
+    expect_refused("render cube.vtk -o x.png --opacity-field U --backend cpu", {"--opacity-field", "--backend gl"});
     EXPECT_EQ(run("trade cube.vtk --size 20x20 --rounds 1 --opacity-field U").code, 0);
     expect_refused("trade cube.vtk --opacity-field U --method stein:vertices", {"--method"});
 }

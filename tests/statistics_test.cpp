@@ -20,7 +20,7 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
     run.peak_memory_bytes = 123456789012;
     Statistics picture;
     picture.ms = {.plan = 1, .sort = 2, .project = 3, .draw = 4, .read_back = 5, .total = 6, .write = 7};
-    picture.counts = {.cells = 11, .culled = 12, .drawn = 13, .triangles = 14, .unordered = 15, .cycles = 17,
+    picture.counts = {.cells = 11, .culled = 12, .drawn = 13, .triangles = 14, .fragments = 22, .unordered = 15, .cycles = 17,
                       .split_cells = 18, .order_violations = 16};
     picture.method = "preint3d:64";
     picture.target = "rgba16f";
@@ -37,7 +37,7 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
         "once": {"ms": {"read": 1.5, "tetrahedralize": 2.5, "prepare": 3.5}},
         "pictures": [{
             "ms": {"plan": 1.0, "sort": 2.0, "project": 3.0, "draw": 4.0, "read_back": 5.0, "total": 6.0, "write": 7.0},
-            "counts": {"cells": 11, "culled": 12, "drawn": 13, "triangles": 14, "unordered": 15, "cycles": 17, "split_cells": 18,
+            "counts": {"cells": 11, "culled": 12, "drawn": 13, "triangles": 14, "fragments": 22, "unordered": 15, "cycles": 17, "split_cells": 18,
                        "order_violations": 16},
             "method": "preint3d:64", "target": "rgba16f", "table_bytes": 4194304,
             "backend": "gl_osmesa", "backend_version": "4.5 (Core Profile)",
@@ -69,6 +69,7 @@ TEST(Statistics, KeysStandInTheOrderOfTheDesign) {
                             "culled",
                             "drawn",
                             "triangles",
+                            "fragments",
                             "unordered",
                             "cycles",
                             "split_cells",

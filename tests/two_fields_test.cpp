@@ -303,6 +303,9 @@ TEST(TwoFieldPicture, TablesAndVerticesAreRefused) {
             EXPECT_NE(std::string(error.what()).find("another field"), std::string::npos) << error.what();
         }
     }
+    EXPECT_THROW(make_renderer(Backend::cpu)->prepare(scene), Error);
+    EXPECT_FALSE(draws(Backend::cpu, {}, FieldsRead::two));
+    EXPECT_TRUE(draws(Backend::gl_osmesa, {}, FieldsRead::two));
     Scene unfit = scene;
     unfit.opacity_field = std::make_shared<ScalarField>(ScalarField{"short", FieldLocation::points, {1, 2}});
     EXPECT_THROW(renderer().prepare(unfit), Error);

@@ -216,13 +216,23 @@ TEST(VisibilitySorter, ACycleIsLeftByDepthAndCounted) {
     const Eye above = Eye::towards({0, 0, 1});
     VisibilitySorter sorter(mesh);
     OrderReport report;
-    const auto order = sorter.order(above, &report);
+    const auto order = sorter.order(above, &report, OrderMethod::mpvo);
     expect_permutation(order.items, mesh.tets.size());
     EXPECT_GE(report.unordered, 1U);
+    EXPECT_FALSE(report.exact);
     EXPECT_GE(count_order_violations(mesh, sorter.adjacency(), order, above), 1U);  // no order can respect a cycle
     EXPECT_LE(count_order_violations(mesh, sorter.adjacency(), order, above), report.unordered * 4);
-    sorter.order(Eye::towards({1, 0.1, 0}), &report);  // from the side there is none
+    sorter.order(Eye::towards({1, 0.1, 0}), &report, OrderMethod::mpvo);  // from the side there is none
     EXPECT_EQ(report.unordered, 0U);
+
+    // The exact methods cut it.
+    EXPECT_FALSE(sorter.order(above, &report).pieces.empty());
+    EXPECT_TRUE(report.exact);
+    EXPECT_EQ(report.cycles, 1U);
+    // Without pieces the cells that were cut are whole again, and counted.
+    expect_permutation(order_cells(mesh, above, &report), mesh.tets.size());
+    EXPECT_GE(report.unordered, 1U);
+    EXPECT_FALSE(report.exact);
 }
 
 TEST(VisibilitySorter, FlatNeedleAndPointCellsDoNotStallIt) {

@@ -31,6 +31,8 @@ struct RenderOptions {
     std::optional<double> max_error;  // --max-error: the method is chosen by measuring
     bool verify_order = false;
     std::vector<double> background{1, 1, 1};
+    std::string backend = "auto";
+    int threads = 0;
     double orbit_degrees = 0;
     int frames = 1, bits = 8;
 };
@@ -56,6 +58,13 @@ std::string positive_error(std::string& text) {
     double value = 0;
     const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && value <= 1;
     return good ? "" : text + " is no error above 0 and up to 1, such as 0.002";
+}
+
+// Without a GPU the native backend is the faster one by far; what it does not draw, OpenGL does.
+Backend choose_backend(const RenderOptions& options, const Quality& quality, FieldsRead fields) {
+    if (options.backend == "gl") return Backend::gl_osmesa;
+    if (options.backend == "cpu") return Backend::cpu;
+    return draws(Backend::cpu, quality, fields) || quality.order_per_pixel ? Backend::cpu : Backend::gl_osmesa;
 }
 
 // picture.png → picture_007.png when there are several.
@@ -108,8 +117,10 @@ void print_proof(const Statistics& s) {
 }
 
 void print_line(const std::filesystem::path& file, const Statistics& s) {
-    std::printf("%s: %zu of %zu cells, %zu triangles, %.0f ms (sort %.0f, project %.0f, draw %.0f)\n", file.c_str(),
-                s.counts.drawn, s.counts.cells, s.counts.triangles, s.ms.total, s.ms.sort, s.ms.project, s.ms.draw);
+    const bool by_triangles = s.counts.triangles > 0;
+    std::printf("%s: %zu of %zu cells, %zu %s, %.0f ms (sort %.0f, project %.0f, draw %.0f) by %s\n", file.c_str(), s.counts.drawn,
+                s.counts.cells, by_triangles ? s.counts.triangles : s.counts.fragments, by_triangles ? "triangles" : "fragments",
+                s.ms.total, s.ms.sort, s.ms.project, s.ms.draw, s.backend.c_str());
 }
 
 // The median over the pictures, without the first one, in which the driver compiles its shaders and tables are made.
@@ -140,10 +151,11 @@ void print_choice(const QualityChoice& choice, double max_error, const ChoiceOpt
     }
 }
 
-Quality choose_measured(Renderer& renderer, const Scene& scene, const std::vector<Camera>& cameras, ImageSize size,
+Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene, const std::vector<Camera>& cameras, ImageSize size,
                         double max_error, const Quality& base, double& measured) {
     ChoiceOptions how{.base = base};
     how.base.check_rays = 0;  // the chosen one's order is proved once
+    how.draws = [backend](const Quality& quality) { return draws(backend, quality); };
     const QualityChoice choice = [&] {
         const Progress progress("choosing a method");
         return choose_quality(renderer, scene, cameras.front(), size, max_error, how);
@@ -166,9 +178,12 @@ void render_pictures(const RenderOptions& options) {
     const ImageSize size = require_possible(options.scene);
     Quality quality{.method = parse_method(options.method, "--method"),
                     .target = parse_target_format(options.target, "--target"),
-                    .order = options.order == "auto" ? std::nullopt : order_method(options.order),
+                    .order = order_method(options.order),  // nothing: auto, pixel
+                    .order_per_pixel = options.order == "pixel",
                     .check_rays = options.verify_order ? rays_of_proof : 0};
-    if (!options.scene.opacity_field.empty()) require_takes_opacity_field(quality.method, "--method");
+    const FieldsRead fields = options.scene.opacity_field.empty() ? FieldsRead::one : FieldsRead::two;
+    const Backend backend = choose_backend(options, quality, fields);
+    require_drawn(backend, quality, fields);
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -178,10 +193,10 @@ void render_pictures(const RenderOptions& options) {
     RunStatistics run;
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
-    const auto renderer = make_renderer(Backend::gl_osmesa);
+    const auto renderer = make_renderer(backend, {.threads = options.threads});
     std::optional<double> error;  // of the first view
     if (options.max_error)
-        quality = choose_measured(*renderer, scene, cameras, size, *options.max_error, quality, error.emplace());
+        quality = choose_measured(*renderer, backend, scene, cameras, size, *options.max_error, quality, error.emplace());
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
@@ -238,9 +253,15 @@ void add_render_command(CLI::App& app) {
         ->excludes(method)->check(CLI::Validator(positive_error, "ERROR"));
     command->add_option("--target", options->target, "What cells are blended in: rgba8, rgba16, rgba16f or rgba32f")
         ->capture_default_str();
+    command->add_option("--backend", options->backend,
+                        "What draws: cpu (native), gl (OpenGL by OSMesa), or auto: cpu, and gl for methods and targets that only it has")
+        ->check(CLI::IsMember({"auto", "cpu", "gl"}))->capture_default_str();
+    command->add_option("--threads", options->threads, "Threads of the cpu backend; 0: all that the process may use")
+        ->check(CLI::Range(0, 1024))->capture_default_str();
     command->add_option("--order", options->order,
-                        "How cells are sorted: auto (exact for this mesh), centroid, power, mpvo, bsp or sxmpvo (sort/README.md)")
-        ->check(CLI::IsMember({"auto", "centroid", "power", "mpvo", "bsp", "sxmpvo"}))->capture_default_str();
+                        "How cells are sorted: auto (exact for this mesh), centroid, power, mpvo, bsp or sxmpvo (sort/README.md), "
+                        "or pixel: each pixel by itself, exact for any mesh (cpu backend)")
+        ->check(CLI::IsMember({"auto", "centroid", "power", "mpvo", "bsp", "sxmpvo", "pixel"}))->capture_default_str();
     command->add_flag("--verify-order", options->verify_order,
                       "Prove the order of every picture: relations of neighbours, and the sequence of cells along 4096 pixels' rays");
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");

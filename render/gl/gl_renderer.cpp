@@ -93,8 +93,8 @@ GlRenderer::~GlRenderer() { context_.make_current(); }
 
 // Brings what depends on the scene and the quality up to date; usually there is nothing to do.
 void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
+    require_drawn(Backend::gl_osmesa, quality, fields_read(scene));
     context_.make_current();
-    if (scene.opacity_field) require_takes_opacity_field(quality.method);
     const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field &&
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
@@ -106,7 +106,6 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     if (same_transfer && (shader_ || lighting_) && method_ == quality.method) return;
 
     const SceneUnits& units = prepared_->units();
-    const FieldsRead fields = scene.opacity_field ? FieldsRead::two : FieldsRead::one;
     const ScalarSpan span{units.scalar_low, units.scalar_high};
     const ScalarSpan opacity_span = scene.opacity_field ? ScalarSpan{units.opacity_low, units.opacity_high} : span;
     const TransferFunction transfer = in_scene_units(*scene.transfer, span, opacity_span, units.length);
@@ -120,7 +119,7 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
         lighting_ = make_vertex_lighting(quality.method, transfer, longest_segment, mean_length);
     } else if (!keeps || !shader->update(transfer)) {
         shader.reset();  // its memory first
-        shader = make_segment_shader(quality.method, transfer, fields, longest_segment, mean_length);
+        shader = make_segment_shader(quality.method, transfer, fields_read(scene), longest_segment, mean_length);
     }
     shader_ = std::move(shader);
     method_ = quality.method;
@@ -178,7 +177,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 
 void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
     const bool perspective = cells.transform().perspective();
-    const bool two_fields = prepared_->scene().opacity_field != nullptr;
+    const bool two_fields = fields_read(prepared_->scene()) == FieldsRead::two;
     const Program& segments =
         program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shader_->source(),
                 std::string(perspective ? "#define PERSPECTIVE\n" : "") + (two_fields ? "#define TWO_FIELDS\n" : "") +

@@ -14,6 +14,7 @@
 #include "classify/method.hpp"
 #include "classify/transfer_function.hpp"
 #include "render/gl/objects.hpp"
+#include "render/scene.hpp"
 
 namespace cellproj::gl {
 
@@ -32,9 +33,6 @@ public:
     virtual void bind(const Program& program) const = 0;
     virtual std::size_t table_bytes() const = 0;
 };
-
-// What colour and extinction are functions of.
-enum class FieldsRead { one, two };
 
 // The parameters are those of make_segment_method (classify/segment_method.hpp). Two fields: only for methods that take them
 // (takes_opacity_field).

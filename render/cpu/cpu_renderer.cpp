@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/cpu/cpu_renderer.hpp"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/partitioner.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "classify/piece_table.hpp"
+#include "classify/segment_method.hpp"
+#include "render/cpu/kernels.hpp"
+#include "render/cpu/screen_mesh.hpp"
+#include "render/cpu/tile_bins.hpp"
+#include "render/prepared_scene.hpp"
+
+namespace cellproj::cpu {
+
+namespace {
+
+// In scene units, where half the diagonal of the mesh's box is 1: no segment is longer than the diagonal.
+constexpr double longest_segment = 2.0;
+
+// What may shine through before a pixel counts as opaque. Twenty times below a step of 8 bits where colours are at most 1.
+constexpr double hidden_share = 1e-4;
+
+// A method as the kernels want it.
+class Classification {
+public:
+    Classification(const Method& method, const TransferFunction& transfer, double mean_length) : shading_{} {
+        const bool by_pieces = method.kind == MethodKind::integral || method.kind == MethodKind::exact;
+        double hidden = hidden_share;
+        if (by_pieces && method.blending == Blending::once) {
+            const PieceTable table = make_piece_table(transfer);
+            const WalkLimits limits = walk_limits(method, table, longest_segment);
+            pieces_.emplace(method, table, limits);
+            bytes_ = table.bytes();
+            shading_.pieces = &*pieces_;
+            // `integral` looks down to 1e-6 in a segment, relative to the brightest colour.
+            hidden = std::min(hidden, std::exp(-limits.deepest) * (method.kind == MethodKind::integral ? 100.0 : 1.0));
+        } else {
+            method_ = make_segment_method(method, transfer, longest_segment, mean_length);
+            bytes_ = method_->table_bytes();
+            shading_.context = method_.get();
+            shading_.light = [](const void* context, float s_f, float s_b, float length, float* rgba) {
+                const Light light = static_cast<const SegmentMethod*>(context)->light(s_f, s_b, std::min<double>(length, longest_segment));
+                for (int channel = 0; channel < 3; ++channel) rgba[channel] = static_cast<float>(std::min(light.color[channel], 1e30));
+                rgba[3] = static_cast<float>(light.opacity);
+            };
+        }
+        shading_.opaque = static_cast<float>(1.0 - hidden);
+    }
+    Classification(const Classification&) = delete;
+    Classification& operator=(const Classification&) = delete;
+
+    const Shading& shading() const { return shading_; }
+    std::size_t bytes() const { return bytes_; }
+
+private:
+    std::optional<PieceArrays> pieces_;
+    std::unique_ptr<SegmentMethod> method_;
+    Shading shading_;
+    std::size_t bytes_ = 0;
+};
+
+class CpuRenderer : public Renderer {
+public:
+    explicit CpuRenderer(int threads) : arena_(threads > 0 ? threads : oneapi::tbb::task_arena::automatic) {}
+
+    void prepare(const Scene& scene, const Quality& quality) override {
+        require_drawn(Backend::cpu, quality, fields_read(scene));
+        arena_.execute([&] { prepare_here(scene, quality); });
+    }
+
+    Image render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality,
+                 Statistics* statistics) override {
+        validate(camera, "camera");
+        validate(size, "size");
+        require_drawn(Backend::cpu, quality, fields_read(scene));
+        return arena_.execute([&] { return render_here(scene, camera, size, quality, statistics); });
+    }
+
+private:
+    void prepare_here(const Scene& scene, const Quality& quality);
+    Image render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out);
+    void draw(Image& image, const Region& region, bool order_per_pixel, Statistics& statistics);
+
+    oneapi::tbb::task_arena arena_;
+    std::optional<PreparedScene> prepared_;
+    Method method_;
+    std::optional<Classification> classification_;  // of method_, for the prepared scene
+    ScreenMesh mesh_;
+    TileBins bins_;
+    std::vector<std::uint8_t> extra_drawn_;
+    oneapi::tbb::enumerable_thread_specific<PendingFragments> pending_;
+};
+
+// Brings what depends on the scene and the quality up to date; usually there is nothing to do.
+void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
+    const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field;
+    const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
+    if (!same_cells) {
+        classification_.reset();
+        prepared_.emplace(scene);
+        mesh_.set_scene(*prepared_);
+    } else if (!same_transfer) {
+        prepared_->set_transfer(scene.transfer);
+        mesh_.set_visible();
+    }
+    if (same_transfer && classification_ && method_ == quality.method) return;
+
+    const SceneUnits& units = prepared_->units();
+    const TransferFunction transfer = in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
+    // A walk over all cells, which one method alone wants to know of.
+    const double mean_length = quality.method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
+    classification_.emplace(quality.method, transfer, mean_length);
+    method_ = quality.method;
+}
+
+Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out) {
+    Statistics statistics;
+    const Stopwatch total;
+    prepare_here(scene, quality);
+    Image image(size.width, size.height);
+    statistics.ms.plan = total.ms();
+
+    const Stopwatch sort;
+    OrderReport order_report;
+    // Pixels that sort their own fragments want cells nearly sorted, no more.
+    const ViewOrder order =
+        prepared_->order(camera, size, quality.order_per_pixel ? OrderMethod::centroid : quality.order, &order_report);
+    statistics.ms.sort = sort.ms();
+
+    const Stopwatch projecting;
+    mesh_.set_view(camera, size);
+    const auto items = mesh_.cut(order);
+    extra_drawn_.assign(mesh_.extra_cells().size(), 0);
+    statistics.ms.project = projecting.ms();
+
+    constexpr int side = region_side * tile_side;
+    for (int y = 0; y < size.height; y += side)
+        for (int x = 0; x < size.width; x += side) {
+            const Region region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
+            const Stopwatch binning;
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_);
+            statistics.counts.drawn += bins_.drawn();
+            statistics.ms.project += binning.ms();
+            draw(image, region, quality.order_per_pixel, statistics);
+        }
+    statistics.ms.total = total.ms();
+
+    std::vector<CellId> parts;
+    for (std::size_t i = 0; i < extra_drawn_.size(); ++i)
+        if (extra_drawn_[i]) parts.push_back(mesh_.extra_cells()[i]);
+    std::sort(parts.begin(), parts.end());
+    statistics.counts.drawn += static_cast<std::size_t>(std::unique(parts.begin(), parts.end()) - parts.begin());
+    statistics.counts.cells = scene.mesh->tets.size();
+    statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
+    statistics.method = to_string(quality.method);
+    statistics.target = to_string(quality.target);
+    statistics.table_bytes = classification_->bytes();
+    statistics.backend = "cpu";
+    statistics.backend_version = instruction_set() + ", " + std::to_string(oneapi::tbb::this_task_arena::max_concurrency()) +
+                                 (oneapi::tbb::this_task_arena::max_concurrency() == 1 ? " thread" : " threads");
+    if (out) {  // the proof of the order is no part of the frame
+        if (quality.order_per_pixel) {
+            statistics.order = "pixel";
+            statistics.order_exact = true;
+        } else {
+            prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
+        }
+        *out = std::move(statistics);
+    }
+    return image;
+}
+
+// Slab by slab from the front, each tile by one task: the same order of operations for any number of threads.
+void CpuRenderer::draw(Image& image, const Region& region, bool order_per_pixel, Statistics& statistics) {
+    const int columns = (region.width + tile_side - 1) / tile_side, rows = (region.height + tile_side - 1) / tile_side;
+    std::atomic<std::size_t> fragments = 0;
+    for (;;) {
+        const Stopwatch filling;
+        const bool some = bins_.next(order_per_pixel);
+        statistics.ms.project += filling.ms();
+        if (!some) break;
+        const Stopwatch drawing;
+        oneapi::tbb::parallel_for(
+            0, columns * rows,
+            [&](int index) {
+                const int column = index % columns, row = index / columns;
+                const auto items = bins_.tile(column, row);
+                if (items.empty()) return;
+                const int x = region.x + column * tile_side, y = region.y + row * tile_side;
+                const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
+                                static_cast<std::size_t>(image.width)};
+                fragments += order_per_pixel
+                                 ? draw_tile_by_pixels(mesh_.cells(), classification_->shading(), tile, items, pending_.local())
+                                 : draw_tile(mesh_.cells(), classification_->shading(), tile, items);
+            },
+            oneapi::tbb::simple_partitioner());
+        statistics.ms.draw += drawing.ms();
+    }
+    statistics.counts.fragments += fragments;
+}
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_renderer(int threads) { return std::make_unique<CpuRenderer>(threads); }
+
+}  // namespace cellproj::cpu

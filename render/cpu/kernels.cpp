@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/cpu/kernels.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/cpu/kernels.cpp"
+// SSE4 and AVX-512 without the extras of Ice Lake do what these would do.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include <hwy/cache_control.h>
+
+#include "render/cpu/segment_light-inl.hpp"
+#include "render/cpu/cell_planes-inl.hpp"
+#include "render/cpu/tile_drawing-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace cellproj::cpu::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// The tiles that a cell's corners span. Rounding keeps order, so no pixel centre inside falls out.
+struct FoundBox {
+    TileBox tiles;
+    bool begins;  // in this region of the picture
+};
+HWY_INLINE FoundBox box_of(const ScreenCells& cells, const Region& region, const std::array<VertexId, 4>& corners) {
+    float low_x = 1e30F, low_y = 1e30F, high_x = -1e30F, high_y = -1e30F;
+    for (const VertexId v : corners) {
+        const ScreenPoint& p = cells.points[v];
+        low_x = std::min(low_x, p.x);
+        low_y = std::min(low_y, p.y);
+        high_x = std::max(high_x, p.x);
+        high_y = std::max(high_y, p.y);
+    }
+    const float x0 = static_cast<float>(region.x) + 0.5F - 0.5F * static_cast<float>(cells.view.width);
+    const float y0 = static_cast<float>(region.y) + 0.5F - 0.5F * static_cast<float>(cells.view.height);
+    const float from_x = std::ceil(low_x - x0), from_y = std::ceil(low_y - y0);
+    const float left = std::max(from_x, 0.0F), top = std::max(from_y, 0.0F);
+    const float right = std::min(std::floor(high_x - x0), static_cast<float>(region.width - 1));
+    const float bottom = std::min(std::floor(high_y - y0), static_cast<float>(region.height - 1));
+    if (!(left <= right && top <= bottom)) return {{}, false};
+    const auto tile = [](float pixel) { return static_cast<std::uint8_t>(static_cast<int>(pixel) / tile_side); };
+    return {{tile(left), tile(top), tile(right), tile(bottom)}, (from_x >= 0 || region.x == 0) && (from_y >= 0 || region.y == 0)};
+}
+
+std::size_t FindBoxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, TileBox* boxes,
+                      std::uint32_t* counts, std::uint8_t* extra_drawn) {
+    constexpr std::size_t early = 32, soon = 16;  // how long before memory is asked: for the corners of a cell, for its points
+    const std::size_t count = items.size();
+    std::size_t drawn = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + early < count) hwy::Prefetch(cells.corners(items[i + early]).data());
+        if (i + soon < count)
+            for (const VertexId v : cells.corners(items[i + soon])) hwy::Prefetch(&cells.points[v]);
+        const std::uint32_t item = items[i];
+        const bool whole = item < cells.tets.size();
+        if (whole && !cells.visible.empty() && !cells.visible[item]) {
+            boxes[i] = {};
+            continue;
+        }
+        const auto [box, begins] = box_of(cells, region, cells.corners(item));
+        boxes[i] = box;
+        for (int y = box.first_y; y <= box.last_y; ++y)
+            for (int x = box.first_x; x <= box.last_x; ++x) ++counts[y * region_side + x];
+        drawn += whole && begins;
+        if (!whole && begins) extra_drawn[item - cells.tets.size()] = 1;
+    }
+    return drawn;
+}
+
+// Loads a tile's pixels, draws, and stores them.
+template <class Draw>
+HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Tile& target, const Draw& draw_as) {
+    HWY_ALIGN TileState tile;
+    const View& view = cells.view;
+    tile.x = static_cast<float>(target.x) + 0.5F - 0.5F * static_cast<float>(view.width);
+    tile.y = static_cast<float>(target.y) + 0.5F - 0.5F * static_cast<float>(view.height);
+    const auto row_bytes = static_cast<std::size_t>(target.width) * sizeof(glm::vec4);
+    for (int y = 0; y < target.height; ++y) {
+        std::memcpy(tile.rgba[tile_side * y], target.pixels + static_cast<std::size_t>(y) * target.stride, row_bytes);
+        tile.open[y] = target.width == 32 ? ~0U : (1U << target.width) - 1U;
+    }
+    const std::size_t fragments = draw_as(tile);
+    for (int y = 0; y < target.height; ++y)
+        std::memcpy(target.pixels + static_cast<std::size_t>(y) * target.stride, tile.rgba[tile_side * y], row_bytes);
+    return fragments;
+}
+
+std::size_t DrawTile(const ScreenCells& cells, const Shading& shading, const Tile& target, std::span<const std::uint32_t> items) {
+    const bool perspective = cells.view.perspective, constant = !cells.cell_scalars.empty();
+    return on_tile(cells, target, [&](TileState& tile) HWY_ATTR {
+        if (perspective)
+            return constant ? draw<true, true>(cells, shading, target, items, tile) : draw<true, false>(cells, shading, target, items, tile);
+        return constant ? draw<false, true>(cells, shading, target, items, tile) : draw<false, false>(cells, shading, target, items, tile);
+    });
+}
+
+std::size_t DrawTileByPixels(const ScreenCells& cells, const Shading& shading, const Tile& target, std::span<const std::uint32_t> items,
+                             PendingFragments& pending) {
+    const bool perspective = cells.view.perspective, constant = !cells.cell_scalars.empty();
+    return on_tile(cells, target, [&](TileState& tile) HWY_ATTR {
+        if (perspective)
+            return constant ? draw_by_pixels<true, true>(cells, shading, target, items, tile, pending)
+                            : draw_by_pixels<true, false>(cells, shading, target, items, tile, pending);
+        return constant ? draw_by_pixels<false, true>(cells, shading, target, items, tile, pending)
+                        : draw_by_pixels<false, false>(cells, shading, target, items, tile, pending);
+    });
+}
+
+}  // namespace cellproj::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace cellproj::cpu {
+
+HWY_EXPORT(FindBoxes);
+HWY_EXPORT(DrawTile);
+HWY_EXPORT(DrawTileByPixels);
+
+std::size_t find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
+                       std::span<TileBox> boxes, std::span<std::uint32_t, tiles_per_region> counts,
+                       std::span<std::uint8_t> extra_drawn) {
+    assert(boxes.size() == items.size() && extra_drawn.size() == cells.extra.size());
+    return HWY_DYNAMIC_DISPATCH(FindBoxes)(cells, region, items, boxes.data(), counts.data(), extra_drawn.data());
+}
+
+std::size_t draw_tile(const ScreenCells& cells, const Shading& shading, const Tile& tile, std::span<const std::uint32_t> items) {
+    assert(tile.width <= tile_side && tile.height <= tile_side);
+    return HWY_DYNAMIC_DISPATCH(DrawTile)(cells, shading, tile, items);
+}
+
+std::size_t draw_tile_by_pixels(const ScreenCells& cells, const Shading& shading, const Tile& tile,
+                                std::span<const std::uint32_t> items, PendingFragments& pending) {
+    assert(tile.width <= tile_side && tile.height <= tile_side);
+    return HWY_DYNAMIC_DISPATCH(DrawTileByPixels)(cells, shading, tile, items, pending);
+}
+
+namespace {
+
+// This build's targets that the machine has, lowest bit, which is the best, first.
+std::vector<std::int64_t> targets() {
+    std::vector<std::int64_t> result;
+    const std::int64_t available = hwy::SupportedTargets() & HWY_TARGETS;
+    for (int bit = 0; bit < 63; ++bit)
+        if (available & (std::int64_t{1} << bit)) result.push_back(std::int64_t{1} << bit);
+    if (result.empty()) result.push_back(HWY_STATIC_TARGET);
+    return result;
+}
+
+std::int64_t chosen_target = 0;  // 0: the best
+
+}  // namespace
+
+std::vector<std::string> instruction_sets() {
+    std::vector<std::string> names;
+    hwy::SetSupportedTargetsForTest(0);  // as the machine is
+    for (const std::int64_t target : targets()) names.emplace_back(hwy::TargetName(target));
+    if (chosen_target) hwy::SetSupportedTargetsForTest(chosen_target);
+    return names;
+}
+
+std::string instruction_set() { return hwy::TargetName(targets().front()); }
+
+void use_instruction_set(const std::string& name) {
+    hwy::SetSupportedTargetsForTest(0);
+    for (const std::int64_t target : targets()) {
+        if (name != hwy::TargetName(target)) continue;
+        chosen_target = target;
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        return;
+    }
+    assert(false && "no such instruction set");
+}
+
+}  // namespace cellproj::cpu
+
+#endif

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The inner loops of the CPU renderer, compiled once for each instruction set and chosen when the program runs. Plain arrays in,
+// pixels out; threads and memory are the caller's business.
+//
+// Screen coordinates here are pixels relative to the middle of the picture: pixel (i, j) has its centre at
+// (i + ½ − width/2, j + ½ − height/2), which float32 holds exactly.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "mesh/tet_mesh.hpp"
+#include "render/cpu/piece_arrays.hpp"
+
+namespace cellproj::cpu {
+
+inline constexpr int tile_side = 32;                       // pixels; a tile's colours are 16 KB
+inline constexpr int region_side = 32;                     // tiles; a region is what cells are binned for at once
+inline constexpr int tiles_per_region = region_side * region_side;
+
+// A vertex as the tiles see it. Nearness grows towards the eye and is affine on the screen over any plane: in perspective
+// 1/depth − View::base_nearness, in parallel views −depth relative to the mesh's middle; depth in scene units.
+struct ScreenPoint {
+    float x, y, nearness;
+    float scalar;  // 0..1; unused for fields on cells
+};
+static_assert(sizeof(ScreenPoint) == 16);
+
+// The nearness of points that perspective cannot show: behind the near plane. Cells with such a corner are cut before.
+inline constexpr float behind_near_plane = 1e30F;
+
+struct View {
+    int width = 0, height = 0;
+    bool perspective = false;
+    float base_nearness = 0;      // perspective: 1/depth of nearness 0, so that differences keep their digits far away
+    float near_plane = 0;         // perspective: 1/depth from which on a segment begins at the eye (cut cells)
+    float unit_per_pixel = 0;     // perspective: on the plane at depth 1
+};
+
+// What is drawn. An item below #T is a cell, item #T + i is extra[i]: parts of cells that were cut, with points of their own.
+struct ScreenCells {
+    View view;
+    std::span<const ScreenPoint> points;
+    std::span<const std::array<VertexId, 4>> tets;   // #T, positively oriented
+    std::span<const std::array<VertexId, 4>> extra;
+    std::span<const float> cell_scalars;             // #T + #extra, 0..1; empty for fields on points
+    std::span<const std::uint8_t> visible;           // #T, 0 for cells that are left out; empty when there are none
+
+    const std::array<VertexId, 4>& corners(std::uint32_t item) const {
+        return item < tets.size() ? tets[item] : extra[item - tets.size()];
+    }
+};
+
+// Which tiles of a region a cell's box meets: first and last column and row. No pixel centre: first_x > last_x.
+struct TileBox {
+    std::uint8_t first_x = 1, first_y = 1, last_x = 0, last_y = 0;
+};
+
+// The part of the picture at (x, y) [pixels], up to region_side tiles wide and high.
+struct Region {
+    int x, y, width, height;  // pixels
+};
+
+// boxes[i] for items[i]; adds to counts[tile], row by row in the region, the number of boxes that meet the tile. Returns the
+// number of whole cells that meet a pixel centre of the region and of none before it; sets extra_drawn (#extra) for the others.
+std::size_t find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
+                       std::span<TileBox> boxes, std::span<std::uint32_t, tiles_per_region> counts,
+                       std::span<std::uint8_t> extra_drawn);
+
+// How a segment becomes light: by the pieces of the transfer function, or by a function called for each segment.
+struct Shading {
+    const PieceArrays* pieces = nullptr;
+    void (*light)(const void* context, float s_f, float s_b, float length, float* rgba) = nullptr;
+    const void* context = nullptr;
+    float opaque = 1;  // behind this opacity nothing is drawn
+};
+
+// The part of the picture that one task draws.
+struct Tile {
+    int x, y, width, height;  // pixels, in the picture; up to tile_side each
+    glm::vec4* pixels;        // the picture's pixel (x, y)
+    std::size_t stride;       // pixels from row to row
+};
+
+// Composites items, given from back to front, behind what the tile holds already, until nothing can be seen any more. Returns the
+// number of fragments: segments that have a length.
+std::size_t draw_tile(const ScreenCells& cells, const Shading& shading, const Tile& tile, std::span<const std::uint32_t> items);
+
+// Fragments that wait until no cell can put one in front of them any more. Memory of a thread, kept from tile to tile.
+struct PendingFragments {
+    std::vector<float> front, back, length, key;
+    std::vector<std::int32_t> pixel;
+    std::vector<float> nearest;          // per group of items: no later one is nearer
+    std::vector<std::uint32_t> sorted;   // numbers of fragments, pixel by pixel
+};
+
+// The same for items in any order, best nearly sorted: the fragments of each pixel are sorted before they are composited. The fewer
+// cells stand before nearer ones and the smaller they are, the fewer fragments wait.
+std::size_t draw_tile_by_pixels(const ScreenCells& cells, const Shading& shading, const Tile& tile,
+                                std::span<const std::uint32_t> items, PendingFragments& pending);
+
+// The instruction sets that this build has and this machine can run, best first, by Highway's names ("AVX3", "AVX2", "SSE4" …).
+std::vector<std::string> instruction_sets();
+// The one that is used.
+std::string instruction_set();
+// Uses no better one than `name`, one of instruction_sets(), from now on, in the whole process. For tests.
+void use_instruction_set(const std::string& name);
+
+}  // namespace cellproj::cpu

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/cpu/screen_mesh.hpp"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "mesh/error.hpp"
+
+namespace cellproj::cpu {
+
+namespace {
+
+// The camera with lengths in the units of the scene, relative to its eye: large coordinates cancel in float64, once.
+ScreenTransform relative_transform(const Camera& camera, ImageSize size, double length) {
+    Camera relative = camera;
+    relative.center = (camera.center - camera.eye) / length;
+    relative.eye = glm::dvec3(0.0);
+    relative.height = camera.height / length;
+    return {relative, size};
+}
+
+// Products of such coordinates stay finite in float32; no pixel lies beyond.
+float screen_coordinate(double pixels) { return static_cast<float>(std::clamp(pixels, -1e12, 1e12)); }
+
+}  // namespace
+
+void ScreenMesh::set_scene(const PreparedScene& prepared) {
+    prepared_ = &prepared;
+    const TetMesh& mesh = *prepared.scene().mesh;
+    const ScalarField& field = *prepared.scene().field;
+    const SceneUnits& units = prepared.units();
+    const bool per_point = field.location == FieldLocation::points;
+    points_.resize(mesh.points.size());
+    cell_scalars_.resize(per_point ? 0 : mesh.tets.size());
+    for (std::size_t i = 0; i < field.values.size(); ++i) {
+        const auto scalar = static_cast<float>(std::clamp(units.normalized(field.values[i]), 0.0, 1.0));
+        (per_point ? points_[i].scalar : cell_scalars_[i]) = scalar;
+    }
+    cells_ = {};
+    cells_.tets = mesh.tets;
+    set_visible();
+}
+
+void ScreenMesh::set_visible() {
+    const auto& visible = prepared_->visible();
+    const bool all = std::find(visible.begin(), visible.end(), std::uint8_t{0}) == visible.end();
+    cells_.visible = all ? std::span<const std::uint8_t>() : std::span(visible);
+}
+
+void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
+    const TetMesh& mesh = *prepared_->scene().mesh;
+    const double unit = prepared_->units().length;
+    eye_ = camera.eye;
+    transform_ = relative_transform(camera, size, unit);
+    near_depth_ = 1e-3 * std::min(glm::distance(camera.eye, camera.center) / unit, 1.0);
+
+    // Half the diagonal is the unit: the mesh lies within 1 of its middle.
+    const Bounds box = bounds(mesh.points);
+    const double middle = transform_.to_eye((box.center() - eye_) / unit).z;
+    base_ = transform_.perspective() ? 1.0 / std::max(middle + 1.0, near_depth_) : middle;
+    View& view = cells_.view;
+    view.width = size.width;
+    view.height = size.height;
+    view.perspective = transform_.perspective();
+    view.base_nearness = view.perspective ? static_cast<float>(base_) : 0.0F;
+    view.near_plane = static_cast<float>(0.999 / near_depth_);
+    view.unit_per_pixel = static_cast<float>(1.0 / transform_.pixels_per_unit());
+
+    points_.resize(mesh.points.size());
+    std::atomic<bool> near_points = false;
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    oneapi::tbb::parallel_for(Range(0, mesh.points.size(), 4096), [&](const Range& range) {
+        bool behind = false;
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            points_[i] = on_screen({transform_.to_eye((mesh.points[i] - eye_) / unit), points_[i].scalar});
+            behind |= points_[i].nearness == behind_near_plane;
+        }
+        if (behind) near_points = true;
+    });
+    near_points_ = near_points;
+}
+
+ScreenPoint ScreenMesh::on_screen(const EyeVertex& vertex) const {
+    const glm::dvec3& p = vertex.position;
+    const auto scalar = static_cast<float>(vertex.scalar);
+    if (transform_.perspective() && !(p.z >= near_depth_ * (1.0 - 1e-9))) return {0.0F, 0.0F, behind_near_plane, scalar};
+    const glm::dvec2 screen = transform_.to_screen(p) - transform_.principal_point();
+    const double nearness = transform_.perspective() ? 1.0 / p.z - base_ : base_ - p.z;
+    return {screen_coordinate(screen.x), screen_coordinate(screen.y), static_cast<float>(nearness), scalar};
+}
+
+ScreenMesh::Corners ScreenMesh::eye_corners(CellId cell) const {
+    const TetMesh& mesh = *prepared_->scene().mesh;
+    Corners corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const VertexId v = mesh.tets[cell][i];
+        const float scalar = cell_scalars_.empty() ? points_[v].scalar : cell_scalars_[cell];
+        corners[i] = {transform_.to_eye((mesh.points[v] - eye_) / prepared_->units().length), scalar};
+    }
+    return corners;
+}
+
+// Position and scalar are linear in space: both are mixed by the same weights.
+ScreenMesh::Corners ScreenMesh::eye_corners(const CellPiece& piece) const {
+    const Corners cell = eye_corners(piece.cell);
+    Corners corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+        corners[i] = {glm::dvec3(0.0), 0.0};
+        for (int v = 0; v < 4; ++v) {
+            const EyeVertex& vertex = cell[static_cast<std::size_t>(v)];
+            corners[i].position += piece.corners[i][v] * vertex.position;
+            corners[i].scalar += piece.corners[i][v] * vertex.scalar;
+        }
+    }
+    return corners;
+}
+
+bool ScreenMesh::is_cut(CellId cell) const {
+    const auto& tet = cells_.tets[cell];
+    return std::any_of(tet.begin(), tet.end(), [&](VertexId v) { return points_[v].nearness == behind_near_plane; });
+}
+
+void ScreenMesh::add_extra(const Corners& corners, CellId cell) {
+    const auto first = static_cast<VertexId>(points_.size());
+    for (const EyeVertex& corner : corners) points_.push_back(on_screen(corner));
+    // Positively oriented, as the mesh's cells are; the frame of the eye is right-handed.
+    const glm::dvec3 a = corners[0].position;
+    const double volume = glm::dot(glm::cross(corners[1].position - a, corners[2].position - a), corners[3].position - a);
+    extra_.push_back(volume >= 0.0 ? std::array{first, first + 1, first + 2, first + 3}
+                                   : std::array{first, first + 1, first + 3, first + 2});
+    extra_cells_.push_back(cell);
+    if (!cell_scalars_.empty()) cell_scalars_.push_back(static_cast<float>(corners[0].scalar));
+}
+
+// What of it lies before the near plane, back to front; returns the number of parts.
+std::size_t ScreenMesh::add_front_part(const Corners& corners, CellId cell) {
+    if (!transform_.perspective()) {
+        add_extra(corners, cell);
+        return 1;
+    }
+    const ClippedTet parts = clip_near(corners, near_depth_);
+    for (std::size_t i = 0; i < parts.count; ++i) add_extra(parts.tets[i], cell);
+    return parts.count;
+}
+
+std::span<const std::uint32_t> ScreenMesh::cut(const ViewOrder& order) {
+    const std::size_t cell_count = cells_.tets.size();
+    points_.resize(prepared_->scene().mesh->points.size());
+    extra_.clear();
+    extra_cells_.clear();
+    if (!cell_scalars_.empty()) cell_scalars_.resize(cell_count);
+    std::span<const std::uint32_t> items = order.items;
+    if (near_points_ || !order.pieces.empty()) {
+        items_.clear();
+        const auto& visible = prepared_->visible();
+        for (const std::uint32_t item : order.items) {
+            const bool whole = item < cell_count;
+            const CellId cell = whole ? item : order.pieces[item - cell_count].cell;
+            if (!visible[cell]) continue;
+            if (whole && !is_cut(cell)) {
+                items_.push_back(item);
+                continue;
+            }
+            const auto first = static_cast<std::uint32_t>(cell_count + extra_.size());
+            const std::size_t parts = add_front_part(whole ? eye_corners(cell) : eye_corners(order.pieces[item - cell_count]), cell);
+            for (std::uint32_t i = 0; i < parts; ++i) items_.push_back(first + i);
+        }
+        items = items_;
+    }
+    cells_.points = points_;
+    cells_.extra = extra_;
+    cells_.cell_scalars = cell_scalars_;
+    return items;
+}
+
+}  // namespace cellproj::cpu

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A mesh as one camera sees it, in float32: every point once per view, and parts of cells as extra tetrahedra.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "project/camera.hpp"
+#include "project/clip.hpp"
+#include "render/cpu/kernels.hpp"
+#include "render/prepared_scene.hpp"
+#include "sort/view_order.hpp"
+
+namespace cellproj::cpu {
+
+// All decisions of a view that need float64: places relative to the eye, nearness relative to the far side of the mesh, cells
+// cut at the near plane (a thousandth of the distance to what the camera looks at, or of the mesh). What is then rounded to
+// float32 is the same for all cells at a point: the picture is that of a mesh whose points have moved by 1e-7 of its size.
+//
+// Memory is kept from view to view.
+class ScreenMesh {
+public:
+    // The scene's scalars; forgets the view. `prepared` must outlive the views.
+    void set_scene(const PreparedScene& prepared);
+    // Which cells can be seen at all (PreparedScene::visible) may have changed.
+    void set_visible();
+
+    // All points as a camera sees them. set_scene came before.
+    void set_view(const Camera& camera, ImageSize size);
+    // The order with split cells as extra tetrahedra and cells cut at the near plane. The span stays valid until the next call,
+    // and no longer than `order` does. set_view came before.
+    std::span<const std::uint32_t> cut(const ViewOrder& order);
+
+    // For the last order that was cut.
+    const ScreenCells& cells() const { return cells_; }
+    // The cells that the extra tetrahedra are parts of.
+    std::span<const CellId> extra_cells() const { return extra_cells_; }
+    // Camera in scene units, about the eye.
+    const ScreenTransform& transform() const { return transform_; }
+
+private:
+    using Corners = std::array<EyeVertex, 4>;
+
+    ScreenPoint on_screen(const EyeVertex& vertex) const;
+    Corners eye_corners(CellId cell) const;
+    Corners eye_corners(const CellPiece& piece) const;
+    bool is_cut(CellId cell) const;
+    void add_extra(const Corners& corners, CellId cell);
+    std::size_t add_front_part(const Corners& corners, CellId cell);
+
+    const PreparedScene* prepared_ = nullptr;
+    glm::dvec3 eye_{0.0};
+    ScreenTransform transform_{Camera{}, ImageSize{}};
+    double near_depth_ = 0, base_ = 0;   // scene units; 1/depth or depth of nearness 0
+    bool near_points_ = false;           // some point lies behind the near plane
+    std::vector<ScreenPoint> points_;    // #P + 4 per extra tetrahedron
+    std::vector<float> cell_scalars_;    // #T + #extra for fields on cells, or none
+    std::vector<std::array<VertexId, 4>> extra_;
+    std::vector<CellId> extra_cells_;
+    std::vector<std::uint32_t> items_;   // the order, where it is not the sorter's own
+    ScreenCells cells_;
+};
+
+}  // namespace cellproj::cpu

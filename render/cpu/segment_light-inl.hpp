@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// classify/piece_walk.cpp for as many segments at once as a vector has lanes, in float32: the light of segments by the pieces of
+// the transfer function. Included once per instruction set, behind Highway; private to kernels.cpp.
+//
+// Where this differs from the float64 model: in the density model the two weights of a part sum up to its opacity, exactly, so
+// that a rule of three points serves shallow parts: its error, 3.6e-4·D³ where τ rises from 0, only moves light between the
+// colours at both ends.
+#if defined(CELLPROJ_SEGMENT_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CELLPROJ_SEGMENT_LIGHT_INL
+#undef CELLPROJ_SEGMENT_LIGHT_INL
+#else
+#define CELLPROJ_SEGMENT_LIGHT_INL
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace cellproj::cpu::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class V>
+struct LightOf {
+    V r, g, b, opacity;
+};
+
+// e^(−x), x ≥ 0; 0 to float32's accuracy from x = 86 on. Relative error 2e-7: 2^f on −½ .. ½ by Cephes' polynomial.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V exp_of_minus(D d, V x) {
+    const hn::RebindToSigned<D> di;
+    const V y = hn::Max(hn::Mul(x, hn::Set(d, -1.44269504F)), hn::Set(d, -125.0F));
+    const auto k = hn::NearestInt(y);
+    const V f = hn::Sub(y, hn::ConvertTo(d, k));
+    V p = hn::Set(d, 1.535336188e-4F);
+    p = hn::MulAdd(p, f, hn::Set(d, 1.339887440e-3F));
+    p = hn::MulAdd(p, f, hn::Set(d, 9.618437357e-3F));
+    p = hn::MulAdd(p, f, hn::Set(d, 5.550332471e-2F));
+    p = hn::MulAdd(p, f, hn::Set(d, 2.402264791e-1F));
+    p = hn::MulAdd(p, f, hn::Set(d, 6.931472028e-1F));
+    p = hn::MulAdd(p, f, hn::Set(d, 1.0F));
+    return hn::BitCast(d, hn::Add(hn::BitCast(di, p), hn::ShiftLeft<23>(k)));
+}
+
+// Depths up to here are shallow: short series serve, and differences would lose digits.
+inline constexpr float shallow_depth = 0.125F;
+
+// e^(−x) for x ≤ shallow_depth: the next term is x⁵/120 < 3e-7.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V exp_of_minus_shallow(D d, V x) {
+    V series = hn::NegMulAdd(hn::Set(d, 1.0F / 24), x, hn::Set(d, 1.0F / 6));
+    series = hn::NegMulAdd(series, x, hn::Set(d, 0.5F));
+    series = hn::NegMulAdd(series, x, hn::Set(d, 1.0F));
+    return hn::NegMulAdd(series, x, hn::Set(d, 1.0F));
+}
+
+// (1 − e^(−D))/D for D ≤ shallow_depth: the next term is D⁵/720 < 5e-8.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V mean_transmittance_shallow(D d, V depth) {
+    V series = hn::NegMulAdd(hn::Set(d, 1.0F / 120), depth, hn::Set(d, 1.0F / 24));
+    series = hn::NegMulAdd(series, depth, hn::Set(d, 1.0F / 6));
+    series = hn::NegMulAdd(series, depth, hn::Set(d, 0.5F));
+    return hn::NegMulAdd(series, depth, hn::Set(d, 1.0F));
+}
+
+// (1 − e^(−D))/D
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V mean_transmittance(D d, V depth) {
+    const V series = mean_transmittance_shallow(d, depth);
+    const auto shallow = hn::Le(depth, hn::Set(d, shallow_depth));
+    if (hn::AllTrue(d, shallow)) return series;
+    const V safe = hn::Max(depth, hn::Set(d, shallow_depth));
+    const V whole = hn::Div(hn::Sub(hn::Set(d, 1.0F), exp_of_minus(d, safe)), safe);
+    return hn::IfThenElse(shallow, series, whole);
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V opacity_of_depth(D d, V depth) {
+    return hn::Min(hn::Mul(depth, mean_transmittance(d, depth)), hn::Set(d, 1.0F));
+}
+
+// Entries of a list per lane; one load where all lanes want the same one, as most do.
+template <class D>
+class PerLane {
+public:
+    using Index = hn::Vec<hn::RebindToSigned<D>>;
+
+    HWY_INLINE PerLane(D d, Index index) : d_(d), index_(index), first_(hn::GetLane(index)) {
+        const hn::RebindToSigned<D> di;
+        same_ = hn::AllTrue(di, hn::Eq(index, hn::Set(di, first_)));
+    }
+    HWY_INLINE hn::Vec<D> of(const std::vector<float>& list) const {
+        return same_ ? hn::Set(d_, list[static_cast<std::size_t>(first_)]) : hn::GatherIndex(d_, list.data(), index_);
+    }
+
+private:
+    D d_;
+    Index index_;
+    std::int32_t first_;
+    bool same_;
+};
+
+template <class D, class V = hn::Vec<D>>
+class Walk {
+public:
+    using DI = hn::RebindToSigned<D>;
+    using VI = hn::Vec<DI>;
+    using M = hn::Mask<D>;
+
+    HWY_INLINE Walk(D d, const PieceArrays& table, V s_f, V s_b, V length)
+        : d_(d), table_(table), from_(s_f), to_(s_b), range_(hn::Abs(hn::Sub(s_b, s_f))), length_(length),
+          rising_(hn::Le(s_f, s_b)), red_(hn::Zero(d)), green_(hn::Zero(d)), blue_(hn::Zero(d)), depth_(hn::Zero(d)) {
+        const M some = hn::Gt(range_, hn::Zero(d));
+        per_range_ = hn::IfThenElseZero(some, hn::Div(hn::Set(d, 1.0F), hn::IfThenElse(some, range_, hn::Set(d, 1.0F))));
+    }
+
+    HWY_INLINE LightOf<V> light() {
+        const DI di;
+        const V deepest = hn::Set(d_, static_cast<float>(table_.limits.deepest));
+        const VI step = hn::IfThenElse(hn::RebindMask(di, rising_), hn::Set(di, 1), hn::Set(di, -1));
+        VI piece = piece_of(from_);
+        V s = from_;
+        M active = hn::Ge(length_, hn::Zero(d_));
+        for (int parts = 1;; ++parts) {
+            const PerLane<D> lanes(d_, piece);
+            const V begin = lanes.of(table_.begin), end = lanes.of(table_.end);
+            const V stop = hn::IfThenElse(rising_, hn::Min(end, to_), hn::Max(begin, to_));
+            add_part(lanes, begin, s, stop, active);
+            active = hn::And(active, hn::And(hn::Ne(stop, to_), hn::Lt(depth_, deepest)));
+            if (hn::AllFalse(d_, active)) break;
+            piece = hn::IfThenElse(hn::RebindMask(di, active), hn::Add(piece, step), piece);
+            s = hn::IfThenElse(active, stop, s);
+            if (table_.limits.takes_blocks() && parts >= 2) take_blocks(active, step, piece, s);
+        }
+        return {red_, green_, blue_, opacity_of_depth(d_, depth_)};
+    }
+
+private:
+    // The last piece that begins at or below s.
+    HWY_INLINE VI piece_of(V s) const {
+        const DI di;
+        const VI bin = hn::ConvertTo(di, hn::Mul(s, hn::Set(d_, table_.bin_count)));
+        VI first = hn::GatherIndex(di, table_.first.data(), bin), last = hn::GatherIndex(di, table_.last.data(), bin);
+        while (!hn::AllTrue(di, hn::Eq(first, last))) {
+            const VI middle = hn::ShiftRight<1>(hn::Add(hn::Add(first, last), hn::Set(di, 1)));
+            const auto below = hn::RebindMask(di, hn::Lt(s, hn::GatherIndex(d_, table_.begin.data(), middle)));
+            last = hn::IfThenElse(below, hn::Sub(middle, hn::Set(di, 1)), last);
+            first = hn::IfThenElse(below, first, middle);
+        }
+        return first;
+    }
+
+    // A part of a piece, t = 0 .. 1 along it: D(t) = depth·((1 − r)·t + r·t²).
+    struct Part {
+        V length, depth, r;
+    };
+    struct Weights {
+        V front, back;  // of the colours at both ends
+    };
+
+    // Adds the rule's sums over t = begin .. begin + width.
+    template <std::size_t N>
+    HWY_INLINE void integrate(const Part& part, V begin, V width, const float (&position)[N], const float (&weight)[N],
+                              Weights& sum) const {
+        const V one = hn::Set(d_, 1.0F), slope = hn::Sub(one, part.r), two_r = hn::Add(part.r, part.r);
+        for (std::size_t i = 0; i < N; ++i) {
+            const V t = hn::MulAdd(width, hn::Set(d_, position[i]), begin);
+            const V behind = hn::MulAdd(hn::Mul(part.depth, t), hn::MulAdd(part.r, t, slope), depth_);
+            const V q = table_.density ? hn::Mul(part.depth, hn::MulAdd(two_r, t, slope)) : part.length;
+            const V light = hn::Mul(hn::Mul(q, exp_of_minus(d_, behind)), hn::Mul(width, hn::Set(d_, weight[i])));
+            sum.back = hn::MulAdd(light, t, sum.back);
+            sum.front = hn::MulAdd(light, hn::Sub(one, t), sum.front);
+        }
+    }
+
+    // Gauss–Legendre on 0..1 (Abramowitz and Stegun, Table 25.4).
+    HWY_INLINE Weights weights_of(const Part& part) const {
+        static constexpr float position3[]{0.11270167F, 0.5F, 0.88729833F}, weight3[]{0.27777778F, 0.44444444F, 0.27777778F};
+        static constexpr float position4[]{0.06943184F, 0.33000948F, 0.66999052F, 0.93056816F};
+        static constexpr float weight4[]{0.17392742F, 0.32607258F, 0.32607258F, 0.17392742F};
+        const V zero = hn::Zero(d_), one = hn::Set(d_, 1.0F);
+        Weights sum{zero, zero};
+        if (hn::AllTrue(d_, hn::Le(part.depth, hn::Set(d_, table_.three_point_depth)))) {
+            integrate(part, zero, one, position3, weight3, sum);
+            return sum;
+        }
+        const V step_depth = hn::Set(d_, static_cast<float>(table_.limits.step_depth));
+        if (hn::AllTrue(d_, hn::Le(part.depth, step_depth))) {
+            integrate(part, zero, one, position4, weight4, sum);
+            return sum;
+        }
+        // Steps of equal optical depth: (1 − r)·t + r·t² = k/steps, solved without cancellation.
+        const V steps = hn::Max(one, hn::Ceil(hn::Div(part.depth, step_depth)));
+        const V slope = hn::Sub(one, part.r), deepest = hn::Set(d_, static_cast<float>(table_.limits.deepest));
+        V begin = zero, k = one;
+        for (;;) {
+            const V share = hn::Min(one, hn::Div(k, steps));
+            const V square = hn::MulAdd(slope, slope, hn::Mul(hn::Mul(hn::Set(d_, 4.0F), part.r), share));
+            const V root = hn::Sqrt(hn::Max(zero, square));
+            const V solved = hn::Min(one, hn::Div(hn::Add(share, share), hn::Add(slope, root)));
+            const V end = hn::IfThenElse(hn::Lt(k, steps), solved, one);
+            integrate(part, begin, hn::Max(zero, hn::Sub(end, begin)), position4, weight4, sum);
+            begin = end;
+            const M more = hn::And(hn::Lt(k, steps), hn::Lt(hn::MulAdd(part.depth, share, depth_), deepest));
+            if (hn::AllFalse(d_, more)) return sum;
+            k = hn::Add(k, one);
+        }
+    }
+
+    // From s to `stop` inside a piece, for the lanes of `active`.
+    HWY_INLINE void add_part(const PerLane<D>& piece, V piece_begin, V s, V stop, M active) {
+        const V per_width = piece.of(table_.inverse_width);
+        const V t0 = hn::Mul(hn::Sub(s, piece_begin), per_width), t1 = hn::Mul(hn::Sub(stop, piece_begin), per_width);
+        const V tau_a = piece.of(table_.extinction[0]), tau_b = piece.of(table_.extinction[1]);
+        const V one = hn::Set(d_, 1.0F), zero = hn::Zero(d_);
+        const V tau0 = hn::MulAdd(tau_b, t0, hn::Mul(tau_a, hn::Sub(one, t0)));
+        const V tau1 = hn::MulAdd(tau_b, t1, hn::Mul(tau_a, hn::Sub(one, t1)));
+        const V share = hn::IfThenElse(hn::Gt(range_, zero), hn::Mul(hn::Abs(hn::Sub(stop, s)), per_range_), one);
+        const V length = hn::IfThenElseZero(active, hn::Mul(length_, hn::Min(share, one)));
+        const V tau = hn::Max(hn::Add(tau0, tau1), zero);
+        const M absorbs = hn::Gt(tau, zero);
+        const V depth = hn::Mul(hn::Mul(length, hn::Set(d_, 0.5F)), tau);
+        const V r = hn::IfThenElseZero(absorbs, hn::Div(hn::Sub(tau1, tau0), hn::IfThenElse(absorbs, tau, one)));
+        Weights w = weights_of({length, depth, r});
+        if (table_.density) {
+            const V seen = hn::Mul(exp_of_minus(d_, depth_), opacity_of_depth(d_, depth));
+            w.front = hn::Max(zero, hn::Sub(seen, w.back));
+        }
+        // Colours at both ends of the part are mixed from those at both ends of the piece.
+        const V at_end = hn::MulAdd(w.front, t0, hn::Mul(w.back, t1));
+        const V at_begin = hn::Sub(hn::Add(w.front, w.back), at_end);
+        red_ = hn::MulAdd(at_begin, piece.of(table_.color[0][0]), hn::MulAdd(at_end, piece.of(table_.color[1][0]), red_));
+        green_ = hn::MulAdd(at_begin, piece.of(table_.color[0][1]), hn::MulAdd(at_end, piece.of(table_.color[1][1]), green_));
+        blue_ = hn::MulAdd(at_begin, piece.of(table_.color[0][2]), hn::MulAdd(at_end, piece.of(table_.color[1][2]), blue_));
+        depth_ = hn::Add(depth_, depth);
+    }
+
+    // The running integral of a channel between the begins of two pieces, > 0.
+    HWY_INLINE V between(std::size_t channel, const PerLane<D>& a, const PerLane<D>& b) const {
+        const V rounded = hn::Sub(b.of(table_.running[channel]), a.of(table_.running[channel]));
+        return hn::Abs(hn::Add(rounded, hn::Sub(b.of(table_.lost[channel]), a.of(table_.lost[channel]))));
+    }
+
+    // The most whole pieces from `piece` on, by halving, that are thin enough to be taken together.
+    HWY_INLINE void take_blocks(M active, VI step, VI& piece, V& s) {
+        const DI di;
+        const VI newest = hn::Set(di, static_cast<std::int32_t>(table_.begin.size()) - 1);
+        const VI last = piece_of(to_), one = hn::Set(di, 1), zero = hn::Zero(di);
+        VI count = hn::IfThenElseZero(hn::RebindMask(di, active), hn::Mul(hn::Sub(last, piece), step));
+        const auto rising = hn::RebindMask(di, rising_);
+        while (!hn::AllFalse(di, hn::Gt(count, one))) {
+            const VI begin = hn::Min(hn::IfThenElse(rising, piece, hn::Add(piece, one)), newest);
+            const VI end = hn::Add(begin, hn::Mul(hn::Max(count, zero), step));
+            const PerLane<D> a(d_, begin), b(d_, end);
+            const V width = hn::Abs(hn::Sub(b.of(table_.begin), a.of(table_.begin)));
+            const V scale = hn::Mul(length_, per_range_);  // ∫ ds → ∫ dx
+            const V block_depth = hn::Mul(between(3, a, b), scale);
+            const M take = hn::And(hn::And(hn::RebindMask(d_, hn::Gt(count, one)), hn::Gt(width, hn::Zero(d_))),
+                                   hn::Le(block_depth, hn::Set(d_, static_cast<float>(table_.limits.block_depth))));
+            if (!hn::AllFalse(d_, take)) {
+                const V light = hn::IfThenElseZero(
+                    take, hn::Mul(scale, hn::Mul(mean_transmittance(d_, block_depth), exp_of_minus(d_, depth_))));
+                red_ = hn::MulAdd(light, between(0, a, b), red_);
+                green_ = hn::MulAdd(light, between(1, a, b), green_);
+                blue_ = hn::MulAdd(light, between(2, a, b), blue_);
+                depth_ = hn::Add(depth_, hn::IfThenElseZero(take, block_depth));
+                const auto taken = hn::RebindMask(di, take);
+                const VI next = hn::Add(piece, hn::Mul(count, step));
+                piece = hn::IfThenElse(taken, next, piece);
+                // A walk down continues at the end of its next piece, which is the begin of the one above.
+                s = hn::IfThenElse(take, b.of(table_.begin), s);
+                count = hn::IfThenElse(taken, zero, count);
+            }
+            count = hn::ShiftRight<1>(count);
+        }
+    }
+
+    D d_;
+    const PieceArrays& table_;
+    V from_, to_, range_, length_;
+    M rising_;
+    V per_range_;
+    V red_, green_, blue_;
+    V depth_;  // so far
+};
+
+// The last piece that begins at or below s.
+HWY_INLINE std::int32_t piece_of(const PieceArrays& table, float s) {
+    const auto bin = static_cast<std::size_t>(s * table.bin_count);
+    std::int32_t first = table.first[bin], last = table.last[bin];
+    while (first < last) {
+        const std::int32_t middle = (first + last + 1) / 2;
+        if (s < table.begin[static_cast<std::size_t>(middle)]) {
+            last = middle - 1;
+        } else {
+            first = middle;
+        }
+    }
+    return first;
+}
+
+// What Walk gives, for segments inside one piece, if none is deeper than three_point_depth; else only `depth` is right. Cells are small
+// and transfer functions have few pieces: this is most of the work, and nothing but arithmetic.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LightOf<V> light_in_piece(D d, const PieceArrays& table, std::int32_t piece, V s_f, V s_b, V length, V& depth) {
+    const auto i = static_cast<std::size_t>(piece);
+    const V one = hn::Set(d, 1.0F), zero = hn::Zero(d), half = hn::Set(d, 0.5F);
+    const V begin = hn::Set(d, table.begin[i]), per_width = hn::Set(d, table.inverse_width[i]);
+    const V t_f = hn::Mul(hn::Sub(s_f, begin), per_width), t_b = hn::Mul(hn::Sub(s_b, begin), per_width);
+    const float tau_0 = table.extinction[0][i], tau_1 = table.extinction[1][i];
+    const auto mixed = [&](float a, float b, V t) HWY_ATTR { return hn::MulAdd(hn::Set(d, b), t, hn::Mul(hn::Set(d, a), hn::Sub(one, t))); };
+    const V tau_f = mixed(tau_0, tau_1, t_f), tau_b = mixed(tau_0, tau_1, t_b);
+    depth = hn::Mul(hn::Mul(length, half), hn::Add(tau_f, tau_b));
+    const V mean_transmitted = mean_transmittance_shallow(d, depth);
+    const V opacity = hn::Mul(depth, mean_transmitted);
+
+    // D(t) = l·(τ_f·t + (τ_b − τ_f)·t²/2); three Gauss points
+    const V bend = hn::Mul(half, hn::Sub(tau_b, tau_f));
+    V back = zero, front = zero;
+    static constexpr float position[]{0.11270167F, 0.5F, 0.88729833F}, weight[]{0.27777778F, 0.44444444F, 0.27777778F};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const V t = hn::Set(d, position[k]);
+        const V behind = hn::Mul(hn::Mul(length, t), hn::MulAdd(bend, t, tau_f));
+        const V transmitted = hn::Mul(hn::Mul(hn::Set(d, weight[k]), length), exp_of_minus_shallow(d, behind));
+        const V light = table.density ? hn::Mul(transmitted, hn::MulAdd(hn::Add(bend, bend), t, tau_f)) : transmitted;
+        back = hn::MulAdd(light, t, back);
+        front = hn::MulAdd(light, hn::Sub(one, t), front);
+    }
+    if (table.density) front = hn::Max(zero, hn::Sub(opacity, back));
+    const V at_end = hn::MulAdd(front, t_f, hn::Mul(back, t_b));
+    const V at_begin = hn::Sub(hn::Add(front, back), at_end);
+    const auto color = [&](std::size_t channel) HWY_ATTR {
+        return hn::MulAdd(at_begin, hn::Set(d, table.color[0][channel][i]), hn::Mul(at_end, hn::Set(d, table.color[1][channel][i])));
+    };
+    return {color(0), color(1), color(2), opacity};
+}
+
+// The light of segments: scalars 0..1, lengths ≥ 0 in scene units.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LightOf<V> light_of_segments(D d, const PieceArrays& table, V s_f, V s_b, V length) {
+    const float low = hn::GetLane(hn::MinOfLanes(d, hn::Min(s_f, s_b))), high = hn::GetLane(hn::MaxOfLanes(d, hn::Max(s_f, s_b)));
+    const std::int32_t piece = piece_of(table, low);
+    if (high < table.end[static_cast<std::size_t>(piece)]) {
+        V depth;
+        const LightOf<V> light = light_in_piece(d, table, piece, s_f, s_b, length, depth);
+        if (hn::AllTrue(d, hn::Le(depth, hn::Set(d, table.three_point_depth)))) return light;
+    }
+    return Walk<D>(d, table, s_f, s_b, length).light();
+}
+
+}  // namespace cellproj::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sort/exact_order.hpp"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <cassert>
+#include <utility>
+
+#include "sort/boundary.hpp"
+#include "sort/boundary_overlaps.hpp"
+#include "sort/boundary_scan.hpp"
+#include "sort/cycles.hpp"
+
+namespace cellproj {
+
+// Between places. Marks the report as not exact where cells are seen to overlap.
+std::vector<OrderArc> ExactOrder::arcs_across(const CellGraph& graph, const Eye& eye, const PixelGrid* pixels, OrderReport& report) {
+    if (!boundary_) {
+        boundary_ = order_boundary(graph.mesh(), graph.adjacency());
+        places_.resize(graph.size());
+        for (CellId place = 0; place < graph.size(); ++place)
+            places_[graph.cell(place)] = place;
+    }
+    std::vector<OrderArc> arcs;
+    if (report.method == OrderMethod::sxmpvo) {
+        assert(pixels);
+        BoundaryScan scan = scan_boundary(graph.mesh(), *boundary_, *pixels);
+        arcs = std::move(scan.arcs);
+        report.exact = scan.crossed_rays == 0;
+    } else {
+        arcs = boundary_overlaps(graph.mesh(), *boundary_, eye);
+    }
+    for (OrderArc& arc : arcs)
+        arc = {places_[arc.behind], places_[arc.front]};
+    return arcs;
+}
+
+ViewOrder ExactOrder::order(const CellGraph& graph, TopologicalSort& topological, const Eye& eye, const PixelGrid* pixels,
+                            OrderReport& report) {
+    report.exact = graph.folded_faces() == 0;
+    std::vector<OrderArc> arcs;
+    if (report.method != OrderMethod::mpvo) arcs = arcs_across(graph, eye, pixels, report);
+    const auto places = topological.run(graph, eye, arcs);
+    items_.resize(places.size());
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    oneapi::tbb::parallel_for(Range(0, places.size(), 4096), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            items_[i] = graph.cell(places[i]);
+    });
+    pieces_.clear();
+    if (places.size() < graph.size()) {
+        // What is left waits for a cycle, and comes after all that does not.
+        ResolvedCycles rest = resolve_cycles(graph, topological.stalled(), arcs, eye);
+        items_.insert(items_.end(), rest.items.begin(), rest.items.end());
+        pieces_ = std::move(rest.pieces);
+        report.unordered = rest.unordered;
+        report.cycles = rest.cycles;
+        report.split_cells = rest.split_cells;
+    }
+    report.exact = report.exact && report.unordered == 0;
+    return {items_, pieces_};
+}
+
+}  // namespace cellproj
