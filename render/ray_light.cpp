@@ -150,6 +150,13 @@ void RayLight::add(std::span<const ScalarEnds> media, std::span<const ScalarEnds
     }
 }
 
+void RayLight::add(const Light& surface) {
+    assert(surface.opacity >= 0 && surface.opacity <= 1);
+    if (opaque()) return;
+    color_ += std::exp(-depth_) * surface.color;
+    depth_ -= std::log1p(-surface.opacity);
+}
+
 void RayLight::integrate(const Stretch& stretch) {
     const double depth = stretch.depth();
     const double transmittance = std::exp(-depth_);

@@ -38,9 +38,12 @@ public:
     // none where both are functions of one.
     void add(std::span<const ScalarEnds> media, std::span<const ScalarEnds> opacity, double length);
 
+    // A surface without thickness, farther than all before: associated, opacity 0..1.
+    void add(const Light& surface);
+
     // Nothing farther can be seen: the transmittance is 0 in float64.
     bool opaque() const { return depth_ > 746.0; }
-    double depth() const { return depth_; }  // optical depth so far
+    double depth() const { return depth_; }  // optical depth so far; infinite behind an opaque surface
     Light light() const;                     // associated
 
 private:

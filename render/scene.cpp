@@ -12,6 +12,8 @@ namespace cellproj {
 
 namespace {
 
+bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
+
 void validate(const TetMesh& mesh, const ScalarField& field) {
     const std::size_t rows = field.location == FieldLocation::points ? mesh.points.size() : mesh.tets.size();
     if (field.values.size() != rows) {
@@ -27,8 +29,22 @@ void validate(const TetMesh& mesh, const ScalarField& field) {
 
 void validate(const Scene& scene) {
     assert(scene.mesh && scene.field && scene.transfer);
-    validate(*scene.mesh, *scene.field);
+    const ScalarField& field = *scene.field;
+    validate(*scene.mesh, field);
     if (scene.opacity_field) validate(*scene.mesh, *scene.opacity_field);
+    if (!has_surfaces(scene)) return;
+    if (field.location == FieldLocation::cells) {
+        throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",
+                     "one on cells, constant in each", "carry it to the points first"});
+    }
+    validate(scene.surfaces->lighting, "lights");
+}
+
+void refuse_surfaces(const Scene& scene, const std::string& backend) {
+    if (!has_surfaces(scene)) return;
+    throw Error({ErrorKind::option, backend, "a scene without isosurfaces",
+                 std::to_string(scene.surfaces->isosurfaces.surfaces().size()) + " of them",
+                 "leave them out: this renderer does not draw them"});
 }
 
 }  // namespace cellproj

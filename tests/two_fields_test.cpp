@@ -49,8 +49,10 @@ Scene scene_of_two(TetMesh mesh, TransferFunction transfer, const std::function<
                    const std::function<double(const glm::dvec3&)>& opacity = other) {
     auto field = std::make_shared<ScalarField>(point_field(mesh, color));
     auto opacity_field = std::make_shared<ScalarField>(point_field(mesh, opacity));
-    return {std::make_shared<TetMesh>(std::move(mesh)), std::move(field), std::make_shared<TransferFunction>(std::move(transfer)),
-            std::move(opacity_field)};
+    return {.mesh = std::make_shared<TetMesh>(std::move(mesh)),
+            .field = std::move(field),
+            .transfer = std::make_shared<TransferFunction>(std::move(transfer)),
+            .opacity_field = std::move(opacity_field)};
 }
 
 double distance(const Light& a, const Light& b) {

@@ -55,7 +55,7 @@ std::size_t pixels_above(const Image& image, const std::vector<PixelTruth>& trut
 void measure(const std::vector<std::string>& methods) {
     const auto mesh = std::make_shared<const TetMesh>(testing_support::delaunay_mesh(30800, 1));
     const auto field = std::make_shared<const ScalarField>(testing_support::point_field(*mesh, waves));
-    std::printf("%zu cells, %dx%d, every pixel judged within 1/512 of a pixel; RGB\n", mesh->tets.size(), size.width, size.height);
+    std::printf("%zu cells, %dx%d, every pixel judged within 1/512 of a pixel; errors of RGB, pixels by RGBA\n", mesh->tets.size(), size.width, size.height);
     std::printf("%-6s %-12s %-4s %-18s %9s %9s %9s %13s\n", "", "", "", "method", "RMS", "99 %", "max", "above 1e-4");
     std::shared_ptr<const RayIndex> index;
     for (const bool ramp : {true, false}) {

@@ -140,7 +140,10 @@ LoadedScene load_scene(const SceneOptions& options) {
         opacity = std::make_shared<const ScalarField>(load_field(options, input, options.opacity_field));
         warn_of_values(*opacity);
     }
-    Scene scene{input.mesh, field, choose_transfer(options, input, *field, opacity.get()), opacity};
+    Scene scene{.mesh = input.mesh,
+                .field = field,
+                .transfer = choose_transfer(options, input, *field, opacity.get()),
+                .opacity_field = opacity};
     return {std::move(input), std::move(scene)};
 }
 

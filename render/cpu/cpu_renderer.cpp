@@ -76,6 +76,7 @@ public:
 
     void prepare(const Scene& scene, const Quality& quality) override {
         require_drawn(Backend::cpu, quality, fields_read(scene));
+        refuse_surfaces(scene, "cpu");
         arena_.execute([&] { prepare_here(scene, quality); });
     }
 
@@ -84,6 +85,7 @@ public:
         validate(camera, "camera");
         validate(size, "size");
         require_drawn(Backend::cpu, quality, fields_read(scene));
+        refuse_surfaces(scene, "cpu");
         return arena_.execute([&] { return render_here(scene, camera, size, quality, statistics); });
     }
 

@@ -94,6 +94,7 @@ GlRenderer::~GlRenderer() { context_.make_current(); }
 // Brings what depends on the scene and the quality up to date; usually there is nothing to do.
 void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     require_drawn(Backend::gl_osmesa, quality, fields_read(scene));
+    refuse_surfaces(scene, "gl_osmesa");
     context_.make_current();
     const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field &&
                             prepared_->scene().opacity_field == scene.opacity_field;
