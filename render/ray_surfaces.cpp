@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace cellproj {
 
@@ -26,6 +27,22 @@ double interpolate(const std::array<double, 4>& values, const std::array<double,
     return std::clamp(products[0] + products[1] + products[2] + products[3], low, high);
 }
 
+// A field where the ray enters and leaves a cell; nothing where a value is not finite.
+std::optional<ScalarEnds> ends_of(const ScalarField& field, const TetMesh& mesh, const Crossing& crossing) {
+    std::array<double, 4> values;
+    for (int corner = 0; corner < 4; ++corner)
+        values[static_cast<std::size_t>(corner)] = field.at(mesh, crossing.cell, corner);
+    if (!std::ranges::all_of(values, [](double s) { return std::isfinite(s); })) return std::nullopt;
+    return ScalarEnds{interpolate(values, crossing.at_enter), interpolate(values, crossing.at_leave)};
+}
+
+double between(const RaySegment& segment, const ScalarEnds& ends, double t) {
+    if (t <= segment.enter) return ends.front;
+    if (t >= segment.leave) return ends.back;
+    const double along = segment.share(t);
+    return (1.0 - along) * ends.front + along * ends.back;
+}
+
 double middle(const RaySegment& segment) { return 0.5 * (segment.enter + segment.leave); }
 
 // The segments that count, in the ray's order.
@@ -44,27 +61,18 @@ double RaySegment::share(double t) const {
     return t <= enter ? 0.0 : t >= leave ? 1.0 : (t - enter) / (leave - enter);
 }
 
-double RaySegment::at(double t) const {
-    if (t <= enter) return scalars.front;
-    if (t >= leave) return scalars.back;
-    const double along = share(t);
-    return (1.0 - along) * scalars.front + along * scalars.back;
-}
+double RaySegment::at(double t) const { return between(*this, scalars, t); }
+
+double RaySegment::opacity_at(double t) const { return between(*this, opacity, t); }
 
 std::vector<RaySegment> ray_segments(const Scene& scene, const std::vector<Crossing>& crossings) {
     std::vector<RaySegment> result;
     result.reserve(crossings.size());
     for (const Crossing& crossing : crossings) {
-        std::array<double, 4> values;
-        for (int corner = 0; corner < 4; ++corner)
-            values[static_cast<std::size_t>(corner)] = scene.field->at(*scene.mesh, crossing.cell, corner);
-        if (!std::ranges::all_of(values, [](double s) { return std::isfinite(s); })) continue;
-        result.push_back({crossing.cell,
-                          crossing.enter,
-                          crossing.leave,
-                          {interpolate(values, crossing.at_enter), interpolate(values, crossing.at_leave)},
-                          crossing.at_enter,
-                          crossing.at_leave});
+        const auto scalars = ends_of(*scene.field, *scene.mesh, crossing);
+        const auto opacity = scene.opacity_field ? ends_of(*scene.opacity_field, *scene.mesh, crossing) : ScalarEnds{};
+        if (!scalars || !opacity) continue;
+        result.push_back({crossing.cell, crossing.enter, crossing.leave, *scalars, crossing.at_enter, crossing.at_leave, *opacity});
     }
     std::sort(result.begin(), result.end(), [](const RaySegment& a, const RaySegment& b) { return a.enter < b.enter; });
     return result;

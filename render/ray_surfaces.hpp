@@ -26,12 +26,14 @@ struct RaySegment {
     double enter, leave;                       // t on the ray [mesh units]
     ScalarEnds scalars;                        // finite
     std::array<double, 4> at_enter, at_leave;  // weights of the cell's points
+    ScalarEnds opacity;                        // finite, of the opacity field; 0 without one
 
-    double share(double t) const;  // of the way from enter to leave, 0..1
-    double at(double t) const;     // the scalar
+    double share(double t) const;       // of the way from enter to leave, 0..1
+    double at(double t) const;          // the scalar
+    double opacity_at(double t) const;  // that of the opacity field
 };
 
-// By ascending `enter`. Cells that touch a scalar which is not finite are left out.
+// By ascending `enter`. Cells that touch a scalar of either field which is not finite are left out.
 std::vector<RaySegment> ray_segments(const Scene& scene, const std::vector<Crossing>& crossings);
 
 // A place where a ray meets an isosurface.

@@ -141,7 +141,7 @@ Light Reference::light(const ViewRay& ray) const {
     // Between two neighbouring bounds the same segments are there, and no surface.
     RayLight light(*scene_.transfer);
     std::vector<RaySegment> here;
-    std::vector<ScalarEnds> media;
+    std::vector<ScalarEnds> media, opacity;
     auto next = along.begin();
     auto hit = hits.begin();
     for (std::size_t i = 0; i < bounds.size() && !light.opaque(); ++i) {
@@ -154,9 +154,12 @@ Light Reference::light(const ViewRay& ray) const {
         while (next != along.end() && next->enter <= begin)
             here.push_back(*next++);
         media.clear();
-        for (const RaySegment& segment : here)
+        opacity.clear();
+        for (const RaySegment& segment : here) {
             media.push_back({segment.at(begin), segment.at(end)});
-        light.add(media, end - begin);
+            if (scene_.opacity_field) opacity.push_back({segment.opacity_at(begin), segment.opacity_at(end)});
+        }
+        light.add(media, opacity, end - begin);
     }
     return light.light();
 }

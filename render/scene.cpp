@@ -14,12 +14,8 @@ namespace {
 
 bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
 
-}  // namespace
-
-void validate(const Scene& scene) {
-    assert(scene.mesh && scene.field && scene.transfer);
-    const ScalarField& field = *scene.field;
-    const std::size_t rows = field.location == FieldLocation::points ? scene.mesh->points.size() : scene.mesh->tets.size();
+void validate(const TetMesh& mesh, const ScalarField& field) {
+    const std::size_t rows = field.location == FieldLocation::points ? mesh.points.size() : mesh.tets.size();
     if (field.values.size() != rows) {
         throw Error({ErrorKind::data, "field \"" + field.name + "\"", std::to_string(rows) + " values",
                      std::to_string(field.values.size()), "choose a field of this mesh"});
@@ -27,6 +23,15 @@ void validate(const Scene& scene) {
     if (std::none_of(field.values.begin(), field.values.end(), [](double s) { return std::isfinite(s); })) {
         throw Error({ErrorKind::data, "field \"" + field.name + "\"", "finite values", "none", "choose another field"});
     }
+}
+
+}  // namespace
+
+void validate(const Scene& scene) {
+    assert(scene.mesh && scene.field && scene.transfer);
+    const ScalarField& field = *scene.field;
+    validate(*scene.mesh, field);
+    if (scene.opacity_field) validate(*scene.mesh, *scene.opacity_field);
     if (!has_surfaces(scene)) return;
     if (field.location == FieldLocation::cells) {
         throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",

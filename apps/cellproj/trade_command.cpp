@@ -28,13 +28,24 @@ struct TradeCommandOptions {
     int rounds = 5;
 };
 
+// Those that can draw the scene.
+std::vector<Quality> possible_qualities(const SceneOptions& scene) {
+    std::vector<Quality> qualities = trade_qualities();
+    if (!scene.opacity_field.empty())
+        std::erase_if(qualities, [](const Quality& quality) { return !takes_opacity_field(quality.method); });
+    return qualities;
+}
+
 // Every method in every target; the usual one where only the other is given.
 std::vector<Quality> choose_qualities(const TradeCommandOptions& options) {
-    if (options.methods.empty() && options.targets.empty()) return trade_qualities();
+    if (options.methods.empty() && options.targets.empty()) return possible_qualities(options.scene);
     std::vector<Quality> in_usual_target;
-    for (const std::string& method : options.methods) in_usual_target.push_back({.method = parse_method(method, "--method")});
+    for (const std::string& text : options.methods) {
+        in_usual_target.push_back({.method = parse_method(text, "--method")});
+        if (!options.scene.opacity_field.empty()) require_takes_opacity_field(in_usual_target.back().method, "--method");
+    }
     if (options.methods.empty()) {
-        in_usual_target = trade_qualities();
+        in_usual_target = possible_qualities(options.scene);
         std::erase_if(in_usual_target, [](const Quality& quality) { return quality.target != Quality{}.target; });
     }
     if (options.targets.empty()) return in_usual_target;
@@ -104,7 +115,8 @@ void run_trade(const TradeCommandOptions& options) {
     }();
     std::sort(rows.begin(), rows.end(), [](const TradeRow& a, const TradeRow& b) { return a.frame_ms < b.frame_ms; });
 
-    const TradeReport report{.scene = input.name + ", field " + scene.field->name + ", " + std::to_string(scene.mesh->tets.size()) +
+    const std::string opacity = scene.opacity_field ? ", opacity by " + scene.opacity_field->name : "";
+    const TradeReport report{.scene = input.name + ", field " + scene.field->name + opacity + ", " + std::to_string(scene.mesh->tets.size()) +
                                       " tetrahedra, " + options.scene.size,
                              .judged = judged.pixels.size(),
                              .whole_picture = judged.whole_picture,
