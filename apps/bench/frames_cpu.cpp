@@ -107,7 +107,7 @@ void CpuStage(benchmark::State& state, Stage stage, Colors colors) {
         const auto items = mesh.cut(order);
         on(Stage::bin);
         bins.begin(mesh.cells(), {0, 0, size.width, size.height}, items, {});
-        bins.next();
+        bins.next_tiles();
         off(Stage::bin);
         Image image(size.width, size.height);
         on(Stage::raster);
