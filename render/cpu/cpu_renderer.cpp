@@ -58,10 +58,13 @@ public:
             shading_.tables = &*tables_;
         }
         shading_.opaque = static_cast<float>(1.0 - hidden);
+        may_be_opaque_ = transfer.max_extinction(0.0, 1.0) * longest_segment > -std::log(hidden);
     }
 
     const Shading& shading() const { return shading_; }
     std::size_t bytes() const { return bytes_; }
+    // Whether a ray can become opaque at all: along the whole diagonal, through the largest extinction.
+    bool may_be_opaque() const { return may_be_opaque_; }
 
 private:
     bool by_pieces() const { return method_.kind == MethodKind::integral || method_.kind == MethodKind::exact; }
@@ -71,6 +74,7 @@ private:
     std::optional<MethodTables> tables_;
     Shading shading_;
     std::size_t bytes_ = 0;
+    bool may_be_opaque_ = false;
 };
 
 class CpuRenderer : public Renderer {
@@ -156,7 +160,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     for (int y = 0; y < size.height; y += side)
         for (int x = 0; x < size.width; x += side) {
             const Region region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_);
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, classification_->may_be_opaque());
             draw(image, region, quality.order_per_pixel, statistics);
             statistics.counts.drawn += bins_.drawn();
         }

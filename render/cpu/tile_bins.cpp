@@ -12,6 +12,8 @@ namespace cellproj::cpu {
 namespace {
 
 constexpr std::size_t items_per_chunk = 16384;
+// Where tiles may become full. A slab costs 2 µs a tile, which a quarter of a million of cells hide.
+constexpr std::size_t slabs = 16, least_slab = 4;  // least_slab: chunks
 template <class T>
 std::span<T> chunk_of(std::span<T> all, std::size_t chunk) {
     const std::size_t begin = chunk * items_per_chunk;
@@ -21,7 +23,7 @@ std::span<T> chunk_of(std::span<T> all, std::size_t chunk) {
 }  // namespace
 
 void TileBins::begin(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
-                     std::span<std::uint8_t> extra_drawn) {
+                     std::span<std::uint8_t> extra_drawn, bool opaque) {
     cells_ = &cells;
     region_ = region;
     items_ = items;
@@ -30,7 +32,8 @@ void TileBins::begin(const ScreenCells& cells, const Region& region, std::span<c
     chunks_left_ = chunks_to_find_ = (items.size() + items_per_chunk - 1) / items_per_chunk;
     counts_.resize(chunks_left_);
     entries_of_chunk_.resize(chunks_left_);
-    last_slab_ = next_tile_ = drawn_ = 0;
+    next_tile_ = drawn_ = 0;
+    opaque_ = opaque;
     // What the picture does not have is full from the start.
     for (int y = 0; y < region_side; ++y)
         for (int x = 0; x < region_side; ++x) full(x, y) = x * tile_side >= region.width || y * tile_side >= region.height;
@@ -78,11 +81,7 @@ void TileBins::fill(std::size_t begin, std::size_t end, std::size_t first_tile, 
 
 bool TileBins::next() {
     if (chunks_left_ == 0 || std::find(full_.begin(), full_.end(), std::uint8_t{0}) == full_.end()) return false;
-    // An eighth shows whether the scene is opaque.
-    const auto tiles_across = [](int pixels) { return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side); };
-    const std::size_t outside = tiles_per_region - tiles_across(region_.width) * tiles_across(region_.height);
-    const bool some_full = static_cast<std::size_t>(std::count(full_.begin(), full_.end(), std::uint8_t{1})) > outside;
-    const std::size_t wanted = last_slab_ == 0 ? (counts_.size() + 7) / 8 : some_full ? 2 * last_slab_ : chunks_left_;
+    const std::size_t wanted = opaque_ ? std::max(least_slab, (counts_.size() + slabs - 1) / slabs) : chunks_left_;
     const std::size_t end = chunks_left_, least = end - std::min(wanted, end);
     if (least < chunks_to_find_) {
         find(least, std::min(chunks_to_find_, end));
@@ -90,7 +89,6 @@ bool TileBins::next() {
     }
     std::size_t entries = entries_of_chunk_[--chunks_left_];
     while (chunks_left_ > least && entries + entries_of_chunk_[chunks_left_ - 1] <= budget_) entries += entries_of_chunk_[--chunks_left_];
-    last_slab_ = end - chunks_left_;
     fill(chunks_left_, end, 0, tiles_per_region);
     return true;
 }

@@ -12,8 +12,8 @@
 
 namespace cellproj::cpu {
 
-// Slabs of the order, nearest first: a small one, then twice as much each time while tiles become full by it, else all the rest.
-// Cells that meet full tiles only are left out, and when all tiles are full there is no further slab.
+// Where tiles may become full, that is, in scenes that can be opaque, slabs are sixteenths of the order: cells that meet full tiles
+// only are left out, and when all tiles are full there is no further slab.
 //
 // A slab holds at most `budget` entries of 4 bytes, or what a single chunk of 16,384 items needs where that is more (at most 64 MB,
 // when every one of them covers all tiles of a region). Besides 4 bytes per item and 4 KB per chunk. Memory is kept from view to
@@ -22,9 +22,9 @@ class TileBins {
 public:
     explicit TileBins(std::size_t budget = std::size_t{1} << 24) : budget_(budget) {}
 
-    // Items, back to front, over a region. The arguments must outlive the slabs.
+    // Items, back to front, over a region. The arguments must outlive the slabs. `opaque`: whether tiles may become full.
     void begin(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
-               std::span<std::uint8_t> extra_drawn);
+               std::span<std::uint8_t> extra_drawn, bool opaque);
     // The next slab towards the back; all cores take part. False when there is none left.
     bool next();
     // The same for tiles that want all of their items at once: the next tiles, as many as the budget allows, at least one. Not to
@@ -54,7 +54,7 @@ private:
     std::vector<Counts> places_;               // per chunk of a slab: where its next entry goes
     std::size_t chunks_left_ = 0;              // the slabs go from the last chunk, the nearest, to the first
     std::size_t chunks_to_find_ = 0;           // without boxes so far: the first ones
-    std::size_t last_slab_ = 0;                // chunks
+    bool opaque_ = false;
     std::size_t next_tile_ = 0;                // of next_tiles
     std::vector<std::uint32_t> entries_;       // of the slab, tile by tile
     std::array<std::uint32_t, tiles_per_region + 1> first_{};
