@@ -88,7 +88,7 @@ std::size_t FindBoxes(const ScreenCells& cells, const Region& region, std::span<
 // Loads a tile's pixels, draws, and stores them.
 template <class Draw>
 HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Shading& shading, const Tile& target, const Draw& draw_as) {
-    HWY_ALIGN TileState tile;
+    TileState tile;  // aligned for the longest vectors
     const View& view = cells.view;
     tile.x = static_cast<float>(target.x) + 0.5F - 0.5F * static_cast<float>(view.width);
     tile.y = static_cast<float>(target.y) + 0.5F - 0.5F * static_cast<float>(view.height);
