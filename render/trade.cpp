@@ -82,6 +82,7 @@ std::vector<TradeRow> measure_trade(Renderer& renderer, const Scene& scene, cons
         Statistics statistics;
         Image image = renderer.render(scene, camera, size, quality, &statistics);
         rows.push_back({.quality = quality,
+                        .backend = statistics.backend,
                         .table_bytes = statistics.table_bytes,
                         .error = compare(image, truths),
                         .image = options.keep_images ? std::move(image) : Image{}});

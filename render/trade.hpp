@@ -18,6 +18,7 @@ namespace cellproj {
 // What one choice of quality costs and how wrong it is.
 struct TradeRow {
     Quality quality;
+    std::string backend;          // that drew it (Statistics::backend)
     double set_up_ms = 0;         // tables and shaders, for a scene that is prepared otherwise; median
     double frame_ms = 0;          // from camera to pixels in memory; median
     std::size_t table_bytes = 0;  // memory of its tables

@@ -13,6 +13,8 @@
 #include <random>
 #include <string>
 
+#include "classify/piece_table.hpp"
+#include "classify/segment_method.hpp"
 #include "mesh/error.hpp"
 #include "render/cpu/kernels.hpp"
 #include "render/reference.hpp"
@@ -284,6 +286,91 @@ TEST(CpuRenderer, DrawsEveryMethodPerPixel) {
         EXPECT_LT(std::sqrt(sum / static_cast<double>(4 * a.pixels.size())), 5e-4) << name;
         EXPECT_GT(std::count_if(a.pixels.begin(), a.pixels.end(), [](const glm::vec4& p) { return p.a > 0.05F; }), 300) << name;
     }
+}
+
+// The kernels' light of segments against the float64 model of the same method (classify/segment_method.hpp), by every instruction
+// set, over smooth transfer functions: where a function bends within 1/4095, rounding a scalar to float32 tells more. Optical depths
+// up to 30.
+TEST(CpuLight, EveryMethodAgreesWithItsFloat64Model) {
+    constexpr double longest = 2.0, mean = 0.3;
+    const TransferFunction density(OpticalModel::density, {{0, {0.1, 0.2, 0.9}}, {0.4, {0.9, 0.1, 0.3}}, {1, {1.0, 0.6, 0.0}}},
+                                   {{0, 0.1}, {0.5, 3.0}, {0.8, 15.0}, {1, 0.5}});
+    const TransferFunction emitter(OpticalModel::emitter, {{0, {0.1, 0.0, 0.9}}, {1, {0.4, 0.6, 0.0}}}, {{0, 0.0}, {0.6, 0.0}, {1, 9.0}});
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    std::vector<float> s_f, s_b, length;
+    for (int i = 0; i < 2003; ++i) {
+        s_f.push_back(i < 2 ? static_cast<float>(i) : uniform(random));
+        s_b.push_back(i % 5 == 0 ? s_f.back() : i % 7 == 0 ? 1.0F : uniform(random));
+        length.push_back(i % 11 == 0 ? 0.0F : static_cast<float>(longest * std::pow(10.0, -4.0 * uniform(random))));
+    }
+    std::vector<glm::vec4> light(s_f.size());
+    for (const std::string& set : cpu::instruction_sets()) {
+        cpu::use_instruction_set(set);
+        for (const char* name : {"average", "average:half", "homogeneous", "stein", "linear:1", "linear:9", "preint2d:64", "preint2d:32:uint8",
+                                 "preint2d-exp:64", "preint2d-exp:33:float16", "preint3d:32", "preint3d:16:linear", "preint3d:16:uint8"})
+            for (const TransferFunction* transfer : {&density, &emitter}) {
+                const Method method = parse_method(name);
+                const auto model = make_segment_method(method, *transfer, longest, mean);
+                cpu::MethodTables tables(method, *transfer, longest, mean);
+                EXPECT_EQ(tables.bytes, model->table_bytes()) << name;
+                const cpu::Shading shading{.tables = &tables, .half_opacity = method.blending == Blending::half};
+                cpu::light_of_segments(shading, false, s_f, s_b, length, light);
+                double largest = 0;
+                for (std::size_t i = 0; i < light.size(); ++i) {
+                    const Light truth = model->light(s_f[i], s_b[i], length[i]);
+                    for (int k = 0; k < 4; ++k) {
+                        const double error = std::abs(light[i][k] - (k < 3 ? truth.color[k] : truth.opacity));
+                        largest = std::max(largest, std::isnan(error) ? 1e9 : error);
+                    }
+                }
+                EXPECT_LT(largest, 1e-5) << name << ", " << set;
+            }
+        for (const TransferFunction* transfer : {&density, &emitter}) {  // one scalar: the short path
+            const Method method = parse_method("exact:1e-6");
+            const auto model = make_segment_method(method, *transfer, longest, mean);
+            const PieceTable table = make_piece_table(*transfer);
+            const cpu::PieceArrays pieces(method, table, walk_limits(method, table, longest));
+            cpu::light_of_segments({.pieces = &pieces}, true, s_f, s_f, length, light);
+            for (std::size_t i = 0; i < light.size(); ++i) {
+                const Light truth = model->light(s_f[i], s_f[i], length[i]);
+                for (int k = 0; k < 4; ++k) ASSERT_NEAR(light[i][k], k < 3 ? truth.color[k] : truth.opacity, 3e-6) << i << ", " << set;
+            }
+        }
+    }
+    cpu::use_instruction_set(cpu::instruction_sets().front());
+}
+
+// Nothing infinite, nothing negative, opacity within 0..1, whatever the extinction.
+TEST(CpuLight, ExtremesStayFinite) {
+    std::vector<float> s_f, s_b, length;
+    for (const float s : {0.0F, 0.49999F, 0.5F, 0.50001F, 1.0F})
+        for (const float t : {0.0F, 0.5F, 1.0F})
+            for (const float l : {0.0F, 1e-38F, 1e-12F, 1.0F, 2.0F, 1e30F}) {
+                s_f.push_back(s);
+                s_b.push_back(t);
+                length.push_back(l);
+            }
+    std::vector<glm::vec4> light(s_f.size());
+    for (const double extinction : {0.0, 1e-30, 1.0, 1e15, 1e38})
+        for (const OpticalModel model : {OpticalModel::density, OpticalModel::emitter}) {
+            const TransferFunction transfer(model, {{0, {0, 1, 1}}, {1, {1, 0, 1}}}, {{0, 0}, {0.5, 0}, {0.5, extinction}, {1, extinction}});
+            for (const char* name : {"average", "average:half", "homogeneous", "stein", "linear:5", "preint2d:16", "preint2d-exp:16", "preint3d:8",
+                                     "preint3d:8:linear"}) {
+                const Method method = parse_method(name);
+                const cpu::MethodTables tables(method, transfer, 2.0, 0.3);
+                cpu::light_of_segments({.tables = &tables, .half_opacity = method.blending == Blending::half}, false, s_f, s_b, length, light);
+                for (const glm::vec4& l : light) {
+                    for (int k = 0; k < 4; ++k) ASSERT_TRUE(std::isfinite(l[k]) && l[k] >= 0.0F) << name << ", " << extinction;
+                    ASSERT_LE(l.w, 1.0F) << name;
+                }
+            }
+            const PieceTable table = make_piece_table(transfer);
+            const cpu::PieceArrays pieces({}, table, walk_limits({}, table, 2.0));
+            cpu::light_of_segments({.pieces = &pieces}, true, s_f, s_f, length, light);
+            for (const glm::vec4& l : light)
+                for (int k = 0; k < 4; ++k) ASSERT_TRUE(std::isfinite(l[k]) && l[k] >= 0.0F) << "constant, " << extinction;
+        }
 }
 
 TEST(CpuRenderer, RefusesWhatItDoesNotDraw) {

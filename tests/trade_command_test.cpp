@@ -81,13 +81,15 @@ TEST_F(TradeCommand, WritesTheSameTableFourTimes) {
     std::istringstream csv(read("t.csv"));
     std::string line;
     std::getline(csv, line);
-    EXPECT_EQ(line, "method,target,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front");
+    EXPECT_EQ(line, "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front");
     double last = 0;
     std::size_t front = 0;
     for (const auto& row : rows) {
         const std::string method = row.at("method"), target = row.at("target");
         std::getline(csv, line);
-        EXPECT_EQ(line.rfind(method + "," + target + ",", 0), 0U) << line;
+        const std::string backend = row.at("backend");
+        EXPECT_EQ(backend, target == "rgba8" ? "gl_osmesa" : "cpu");  // auto: cpu where it draws the method
+        EXPECT_EQ(line.rfind(method + "," + target + "," + backend + ",", 0), 0U) << line;
         EXPECT_GE(row.at("ms").at("frame"), last);  // sorted by time
         last = row.at("ms").at("frame");
         front += row.at("on_front").get<bool>() ? 1 : 0;
@@ -110,6 +112,18 @@ TEST_F(TradeCommand, ThePageHoldsAllItShows) {
     EXPECT_EQ(count(page, "://"), 1U);  // the name of SVG's language: nothing is fetched
     for (const char* word : {"[ms]", "RMS error of the colours", "<polyline", "integral"})
         EXPECT_NE(page.find(word), std::string::npos) << word;
+}
+
+TEST_F(TradeCommand, DrawsByTheBackendThatIsAskedFor) {
+    ASSERT_EQ(run("trade", "--backend gl --method average --method integral --rounds 1 --json t.json").code, 0);
+    for (const auto& row : nlohmann::json::parse(read("t.json")).at("methods")) EXPECT_EQ(row.at("backend"), "gl_osmesa");
+    const Outcome all = run("trade", "--backend cpu --rounds 1 --json t.json");  // of all methods, those that it draws
+    ASSERT_EQ(all.code, 0) << all.text;
+    const auto json = nlohmann::json::parse(read("t.json"));
+    EXPECT_GT(json.at("methods").size(), 10U);
+    for (const auto& row : json.at("methods")) EXPECT_EQ(row.at("backend"), "cpu");
+    expect_refused(1, "trade", "--backend cpu --method shirley-tuchman --json u.json", {"--method", "--backend gl"});
+    expect_refused(2, "trade", "--backend vulkan", {"--backend"});
 }
 
 TEST_F(TradeCommand, JudgesAsManyPixelsAsAskedFor) {

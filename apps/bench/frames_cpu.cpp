@@ -91,8 +91,8 @@ void CpuStage(benchmark::State& state, Stage stage, Colors colors) {
         off(Stage::transform);
         const auto items = mesh.cut(order);
         on(Stage::bin);
-        bins.begin(mesh.cells(), {0, 0, size.width, size.height}, items, {});
-        bins.next();
+        bins.begin(mesh.cells(), {0, 0, size.width, size.height}, items, {}, false);
+        bins.next_tiles();
         off(Stage::bin);
         Image image(size.width, size.height);
         on(Stage::raster);

@@ -26,26 +26,58 @@ struct TradeCommandOptions {
     std::filesystem::path page, csv, json;
     std::optional<std::size_t> sample;
     int rounds = 5;
+    std::string backend = "auto";
 };
 
+// What the user of `render` gets: the native backend, and OpenGL for what it does not draw. Each is made when it is wanted first.
+class EitherRenderer : public Renderer {
+public:
+    void prepare(const Scene& scene, const Quality& quality) override { of(scene, quality).prepare(scene, quality); }
+    Image render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* statistics) override {
+        return of(scene, quality).render(scene, camera, size, quality, statistics);
+    }
+
+private:
+    Renderer& of(const Scene& scene, const Quality& quality) {
+        const bool native = draws(Backend::cpu, quality, fields_read(scene));
+        std::unique_ptr<Renderer>& renderer = native ? cpu_ : gl_;
+        if (!renderer) renderer = make_renderer(native ? Backend::cpu : Backend::gl_osmesa);
+        return *renderer;
+    }
+
+    std::unique_ptr<Renderer> cpu_, gl_;
+};
+
+std::unique_ptr<Renderer> make_chosen_renderer(const std::string& backend) {
+    if (backend == "auto") return std::make_unique<EitherRenderer>();
+    return make_renderer(backend == "cpu" ? Backend::cpu : Backend::gl_osmesa);
+}
+
+std::string in_words(const std::string& backend) {
+    if (backend == "cpu") return "the native backend";
+    return backend == "gl" ? "OpenGL on OSMesa" : "the native backend, OpenGL on OSMesa for what it does not draw";
+}
+
 // Those that can draw the scene.
-std::vector<Quality> possible_qualities(const SceneOptions& scene) {
+std::vector<Quality> possible_qualities(const TradeCommandOptions& options) {
     std::vector<Quality> qualities = trade_qualities();
-    if (!scene.opacity_field.empty())
-        std::erase_if(qualities, [](const Quality& quality) { return !takes_opacity_field(quality.method); });
+    const bool two_fields = !options.scene.opacity_field.empty();
+    std::erase_if(qualities, [&](const Quality& quality) {
+        return (two_fields && !takes_opacity_field(quality.method)) || (options.backend == "cpu" && !draws(Backend::cpu, quality));
+    });
     return qualities;
 }
 
 // Every method in every target; the usual one where only the other is given.
 std::vector<Quality> choose_qualities(const TradeCommandOptions& options) {
-    if (options.methods.empty() && options.targets.empty()) return possible_qualities(options.scene);
+    if (options.methods.empty() && options.targets.empty()) return possible_qualities(options);
     std::vector<Quality> in_usual_target;
     for (const std::string& text : options.methods) {
         in_usual_target.push_back({.method = parse_method(text, "--method")});
         if (!options.scene.opacity_field.empty()) require_takes_opacity_field(in_usual_target.back().method, "--method");
     }
     if (options.methods.empty()) {
-        in_usual_target = possible_qualities(options.scene);
+        in_usual_target = possible_qualities(options);
         std::erase_if(in_usual_target, [](const Quality& quality) { return quality.target != Quality{}.target; });
     }
     if (options.targets.empty()) return in_usual_target;
@@ -94,6 +126,8 @@ Truths find_truths(const TradeCommandOptions& options, const Scene& scene, const
 void run_trade(const TradeCommandOptions& options) {
     const ImageSize size = require_possible(options.scene);
     const std::vector<Quality> qualities = choose_qualities(options);
+    if (options.backend == "cpu")
+        for (const Quality& quality : qualities) require_drawn(Backend::cpu, quality);
     check_files(options);
     const LoadedScene loaded = load_scene(options.scene);
     const Scene& scene = loaded.scene;
@@ -104,7 +138,7 @@ void run_trade(const TradeCommandOptions& options) {
     }
     const Camera& camera = cameras.front();
     const Truths judged = find_truths(options, scene, camera, size);
-    const auto renderer = make_renderer(Backend::gl_osmesa);
+    const auto renderer = make_chosen_renderer(options.backend);
     std::vector<TradeRow> rows = [&] {
         Progress progress("rendering in " + std::to_string(qualities.size()) + " ways");
         const auto tell = [&](std::size_t done, std::size_t of) {
@@ -121,7 +155,7 @@ void run_trade(const TradeCommandOptions& options) {
                              .judged = judged.pixels.size(),
                              .whole_picture = judged.whole_picture,
                              .rounds = options.rounds,
-                             .backend = "OpenGL on OSMesa",
+                             .backend = in_words(options.backend),
                              .rows = rows,
                              .truth = to_image(judged.pixels, size),
                              .truths = judged.pixels};
@@ -146,6 +180,8 @@ void add_trade_command(CLI::App& app) {
         ->check(CLI::Range(1, 100000000));
     command->add_option("--rounds", options->rounds, "Frames timed per method; the median counts")
         ->check(CLI::Range(1, 1000))->capture_default_str();
+    command->add_option("--backend", options->backend, "What draws: cpu (native), gl (OpenGL by OSMesa), or auto: cpu, and gl for what only it draws")
+        ->check(CLI::IsMember({"auto", "cpu", "gl"}))->capture_default_str();
     command->add_option("-o,--output", options->page, "Write a page with table, plot, pictures and error maps (HTML)");
     command->add_option("--csv", options->csv, "Write the table as CSV");
     command->add_option("--json", options->json, "Write the table as JSON");

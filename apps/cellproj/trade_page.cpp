@@ -58,10 +58,10 @@ Image spread(const Image& image, std::span<const PixelTruth> truths) {
 
 std::string table(std::span<const TradeRow> rows) {
     std::string html =
-        "<table><tr><th>method<th>frame [ms]<th>set-up [ms]<th>tables [kB]<th>RMS<th>99 %<th>max<th>max, opacity<th>front</tr>\n";
+        "<table><tr><th>method<th>backend<th>frame [ms]<th>set-up [ms]<th>tables [kB]<th>RMS<th>99 %<th>max<th>max, opacity<th>front</tr>\n";
     for (const TradeRow& row : rows) {
         const ErrorMeasure& color = row.error.color;
-        html += std::string("<tr") + (row.on_front ? " class=front" : "") + "><td>" + html_escaped(to_string(row.quality)) + "<td>" +
+        html += std::string("<tr") + (row.on_front ? " class=front" : "") + "><td>" + html_escaped(to_string(row.quality)) + "<td>" + html_escaped(row.backend) + "<td>" +
                 formatted("%.1f", row.frame_ms) + "<td>" + formatted("%.2f", row.set_up_ms) + "<td>" +
                 formatted("%.0f", static_cast<double>(row.table_bytes) / 1000) + "<td>" + formatted("%.2e", color.rms) + "<td>" +
                 formatted("%.2e", color.percentile_99) + "<td>" + formatted("%.2e", color.maximum) + "<td>" +

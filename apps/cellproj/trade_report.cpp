@@ -50,11 +50,11 @@ std::string TradeReport::timed_in_words() const {
 }
 
 std::string to_table(const TradeReport& report) {
-    std::string text = line("%-26s %9s %10s %9s  %9s %9s %9s %9s\n", "method", "frame ms", "set-up ms", "tables kB", "RMS", "99 %",
+    std::string text = line("%-26s %-9s %9s %10s %9s  %9s %9s %9s %9s\n", "method", "backend", "frame ms", "set-up ms", "tables kB", "RMS", "99 %",
                             "max", "max alpha");
     for (const TradeRow& row : report.rows) {
         const ErrorMeasure& color = row.error.color;
-        text += line("%-26s %9.1f %10.2f %9.0f  %9.2e %9.2e %9.2e %9.2e%s\n", to_string(row.quality).c_str(), row.frame_ms,
+        text += line("%-26s %-9s %9.1f %10.2f %9.0f  %9.2e %9.2e %9.2e %9.2e%s\n", to_string(row.quality).c_str(), row.backend.c_str(), row.frame_ms,
                      row.set_up_ms, static_cast<double>(row.table_bytes) / 1000, color.rms, color.percentile_99, color.maximum,
                      row.error.opacity.maximum, row.on_front ? " *" : "");
     }
@@ -63,10 +63,10 @@ std::string to_table(const TradeReport& report) {
 }
 
 std::string to_csv(const TradeReport& report) {
-    std::string text = "method,target,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front\n";
+    std::string text = "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front\n";
     for (const TradeRow& row : report.rows) {
-        text += line("%s,%s,%.3f,%.3f,%zu,%.6e,%.6e,%.6e,%.6e,%.6e,%d\n", to_string(row.quality.method).c_str(),
-                     to_string(row.quality.target).c_str(), row.frame_ms, row.set_up_ms, row.table_bytes, row.error.color.rms, row.error.color.percentile_99,
+        text += line("%s,%s,%s,%.3f,%.3f,%zu,%.6e,%.6e,%.6e,%.6e,%.6e,%d\n", to_string(row.quality.method).c_str(),
+                     to_string(row.quality.target).c_str(), row.backend.c_str(), row.frame_ms, row.set_up_ms, row.table_bytes, row.error.color.rms, row.error.color.percentile_99,
                      row.error.color.maximum, row.error.opacity.rms, row.error.opacity.maximum, row.on_front ? 1 : 0);
     }
     return text;
@@ -81,6 +81,7 @@ std::string to_json(const TradeReport& report) {
     for (const TradeRow& row : report.rows) {
         rows.push_back({{"method", to_string(row.quality.method)},
                         {"target", to_string(row.quality.target)},
+                        {"backend", row.backend},
                         {"ms", {{"set_up", row.set_up_ms}, {"frame", row.frame_ms}}},
                         {"table_bytes", row.table_bytes},
                         {"error", {{"color", measure(row.error.color)}, {"opacity", measure(row.error.opacity)}}},

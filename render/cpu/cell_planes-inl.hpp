@@ -85,7 +85,7 @@ struct Corners {
 
 // The planes of `count` ≤ Lanes(d) cells over a tile whose first pixel centre is (tile_x, tile_y).
 template <bool perspective, bool constant, class D>
-HWY_INLINE void make_planes(D d, const ScreenCells& cells, const std::uint32_t* items, std::size_t count, float tile_x,
+HWY_NOINLINE void make_planes(D d, const ScreenCells& cells, const std::uint32_t* items, std::size_t count, float tile_x,
                             float tile_y, int tile_width, int tile_height, Corners& corners, CellPlanes& planes) {
     const hn::RebindToUnsigned<D> du;
     const hn::RebindToSigned<D> di;

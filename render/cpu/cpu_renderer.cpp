@@ -34,40 +34,47 @@ constexpr double hidden_share = 1e-4;
 // A method as the kernels want it.
 class Classification {
 public:
-    Classification(const Method& method, const TransferFunction& transfer, double mean_length) : shading_{} {
-        const bool by_pieces = method.kind == MethodKind::integral || method.kind == MethodKind::exact;
-        double hidden = hidden_share;
-        if (by_pieces && method.blending == Blending::once) {
-            const PieceTable table = make_piece_table(transfer);
-            const WalkLimits limits = walk_limits(method, table, longest_segment);
-            pieces_.emplace(method, table, limits);
-            bytes_ = table.bytes();
-            shading_.pieces = &*pieces_;
-            // `integral` looks down to 1e-6 in a segment, relative to the brightest colour.
-            hidden = std::min(hidden, std::exp(-limits.deepest) * (method.kind == MethodKind::integral ? 100.0 : 1.0));
-        } else {
-            method_ = make_segment_method(method, transfer, longest_segment, mean_length);
-            bytes_ = method_->table_bytes();
-            shading_.context = method_.get();
-            shading_.light = [](const void* context, float s_f, float s_b, float length, float* rgba) {
-                const Light light = static_cast<const SegmentMethod*>(context)->light(s_f, s_b, std::min<double>(length, longest_segment));
-                for (int channel = 0; channel < 3; ++channel) rgba[channel] = static_cast<float>(std::min(light.color[channel], 1e30));
-                rgba[3] = static_cast<float>(light.opacity);
-            };
-        }
-        shading_.opaque = static_cast<float>(1.0 - hidden);
+    Classification(const Method& method, const TransferFunction& transfer, double mean_length) : method_(method) {
+        if (!by_pieces()) tables_.emplace(method, transfer, longest_segment, mean_length);
+        set_transfer(transfer);
     }
     Classification(const Classification&) = delete;
     Classification& operator=(const Classification&) = delete;
 
+    void set_transfer(const TransferFunction& transfer) {
+        shading_.half_opacity = method_.blending == Blending::half;
+        double hidden = hidden_share;
+        if (by_pieces()) {
+            const PieceTable table = make_piece_table(transfer);
+            const WalkLimits limits = walk_limits(method_, table, longest_segment);
+            pieces_.emplace(method_, table, limits);
+            bytes_ = table.bytes();
+            shading_.pieces = &*pieces_;
+            // `integral` looks down to 1e-6 in a segment, relative to the brightest colour.
+            hidden = std::min(hidden, std::exp(-limits.deepest) * (method_.kind == MethodKind::integral ? 100.0 : 1.0));
+        } else {
+            tables_->set_transfer(transfer);
+            bytes_ = tables_->bytes;
+            shading_.tables = &*tables_;
+        }
+        shading_.opaque = static_cast<float>(1.0 - hidden);
+        may_be_opaque_ = transfer.max_extinction(0.0, 1.0) * longest_segment > -std::log(hidden);
+    }
+
     const Shading& shading() const { return shading_; }
     std::size_t bytes() const { return bytes_; }
+    // Whether a ray can become opaque at all: along the whole diagonal, through the largest extinction.
+    bool may_be_opaque() const { return may_be_opaque_; }
 
 private:
+    bool by_pieces() const { return method_.kind == MethodKind::integral || method_.kind == MethodKind::exact; }
+
+    Method method_;
     std::optional<PieceArrays> pieces_;
-    std::unique_ptr<SegmentMethod> method_;
+    std::optional<MethodTables> tables_;
     Shading shading_;
     std::size_t bytes_ = 0;
+    bool may_be_opaque_ = false;
 };
 
 class CpuRenderer : public Renderer {
@@ -116,10 +123,15 @@ void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
         prepared_->set_transfer(scene.transfer);
         mesh_.set_visible();
     }
-    if (same_transfer && classification_ && method_ == quality.method) return;
+    const bool same_method = classification_ && method_ == quality.method;
+    if (same_transfer && same_method) return;
 
     const SceneUnits& units = prepared_->units();
     const TransferFunction transfer = in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
+    if (same_method) {
+        classification_->set_transfer(transfer);
+        return;
+    }
     // A walk over all cells, which one method alone wants to know of.
     const double mean_length = quality.method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
     classification_.emplace(quality.method, transfer, mean_length);
@@ -150,11 +162,9 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     for (int y = 0; y < size.height; y += side)
         for (int x = 0; x < size.width; x += side) {
             const Region region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
-            const Stopwatch binning;
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_);
-            statistics.counts.drawn += bins_.drawn();
-            statistics.ms.project += binning.ms();
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, classification_->may_be_opaque());
             draw(image, region, quality.order_per_pixel, statistics);
+            statistics.counts.drawn += bins_.drawn();
         }
     statistics.ms.total = total.ms();
 
@@ -189,7 +199,7 @@ void CpuRenderer::draw(Image& image, const Region& region, bool order_per_pixel,
     std::atomic<std::size_t> fragments = 0;
     for (;;) {
         const Stopwatch filling;
-        const bool some = bins_.next(order_per_pixel);
+        const bool some = order_per_pixel ? bins_.next_tiles() : bins_.next();
         statistics.ms.project += filling.ms();
         if (!some) break;
         const Stopwatch drawing;
@@ -201,7 +211,7 @@ void CpuRenderer::draw(Image& image, const Region& region, bool order_per_pixel,
                 if (items.empty()) return;
                 const int x = region.x + column * tile_side, y = region.y + row * tile_side;
                 const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
-                                static_cast<std::size_t>(image.width)};
+                                static_cast<std::size_t>(image.width), &bins_.full(column, row)};
                 fragments += order_per_pixel
                                  ? draw_tile_by_pixels(mesh_.cells(), classification_->shading(), tile, items, pending_.local())
                                  : draw_tile(mesh_.cells(), classification_->shading(), tile, items);

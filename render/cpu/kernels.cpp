@@ -9,12 +9,18 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu/kernels.cpp"
 // SSE4 and AVX-512 without the extras of Ice Lake do what these would do.
+#ifdef CELLPROJ_FEW_INSTRUCTION_SETS  // builds with sanitizers: the best one here and the least
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_AVX2 | HWY_SSE4)
+#else
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#endif
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <hwy/cache_control.h>
+#include <hwy/contrib/math/math-inl.h>
 
 #include "render/cpu/segment_light-inl.hpp"
+#include "render/cpu/table_light-inl.hpp"
 #include "render/cpu/cell_planes-inl.hpp"
 #include "render/cpu/tile_drawing-inl.hpp"
 
@@ -48,8 +54,8 @@ HWY_INLINE FoundBox box_of(const ScreenCells& cells, const Region& region, const
     return {{tile(left), tile(top), tile(right), tile(bottom)}, (from_x >= 0 || region.x == 0) && (from_y >= 0 || region.y == 0)};
 }
 
-std::size_t FindBoxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, TileBox* boxes,
-                      std::uint32_t* counts, std::uint8_t* extra_drawn) {
+std::size_t FindBoxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
+                      const std::uint8_t* full, TileBox* boxes, std::uint32_t* counts, std::uint8_t* extra_drawn) {
     constexpr std::size_t early = 32, soon = 16;  // how long before memory is asked: for the corners of a cell, for its points
     const std::size_t count = items.size();
     std::size_t drawn = 0;
@@ -64,9 +70,15 @@ std::size_t FindBoxes(const ScreenCells& cells, const Region& region, std::span<
             continue;
         }
         const auto [box, begins] = box_of(cells, region, cells.corners(item));
-        boxes[i] = box;
+        bool open = false;
         for (int y = box.first_y; y <= box.last_y; ++y)
-            for (int x = box.first_x; x <= box.last_x; ++x) ++counts[y * region_side + x];
+            for (int x = box.first_x; x <= box.last_x; ++x) {
+                const int tile = y * region_side + x;
+                counts[tile] += full[tile] == 0;
+                open |= full[tile] == 0;
+            }
+        boxes[i] = open ? box : TileBox{};
+        if (!open) continue;
         drawn += whole && begins;
         if (!whole && begins) extra_drawn[item - cells.tets.size()] = 1;
     }
@@ -75,8 +87,8 @@ std::size_t FindBoxes(const ScreenCells& cells, const Region& region, std::span<
 
 // Loads a tile's pixels, draws, and stores them.
 template <class Draw>
-HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Tile& target, const Draw& draw_as) {
-    TileState tile;  // aligned as its parts ask
+HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Shading& shading, const Tile& target, const Draw& draw_as) {
+    TileState tile;  // aligned for the longest vectors
     const View& view = cells.view;
     tile.x = static_cast<float>(target.x) + 0.5F - 0.5F * static_cast<float>(view.width);
     tile.y = static_cast<float>(target.y) + 0.5F - 0.5F * static_cast<float>(view.height);
@@ -86,6 +98,7 @@ HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Tile& target, con
         tile.open[y] = target.width == 32 ? ~0U : (1U << target.width) - 1U;
     }
     const std::size_t fragments = draw_as(tile);
+    if (target.full && !close_pixels(tile, shading.opaque, target.width, target.height)) *target.full = 1;
     for (int y = 0; y < target.height; ++y)
         std::memcpy(target.pixels + static_cast<std::size_t>(y) * target.stride, tile.rgba[tile_side * y], row_bytes);
     return fragments;
@@ -93,7 +106,7 @@ HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Tile& target, con
 
 std::size_t DrawTile(const ScreenCells& cells, const Shading& shading, const Tile& target, std::span<const std::uint32_t> items) {
     const bool perspective = cells.view.perspective, constant = !cells.cell_scalars.empty();
-    return on_tile(cells, target, [&](TileState& tile) HWY_ATTR {
+    return on_tile(cells, shading, target, [&](TileState& tile) HWY_ATTR {
         if (perspective)
             return constant ? draw<true, true>(cells, shading, target, items, tile) : draw<true, false>(cells, shading, target, items, tile);
         return constant ? draw<false, true>(cells, shading, target, items, tile) : draw<false, false>(cells, shading, target, items, tile);
@@ -103,13 +116,29 @@ std::size_t DrawTile(const ScreenCells& cells, const Shading& shading, const Til
 std::size_t DrawTileByPixels(const ScreenCells& cells, const Shading& shading, const Tile& target, std::span<const std::uint32_t> items,
                              PendingFragments& pending) {
     const bool perspective = cells.view.perspective, constant = !cells.cell_scalars.empty();
-    return on_tile(cells, target, [&](TileState& tile) HWY_ATTR {
+    return on_tile(cells, shading, target, [&](TileState& tile) HWY_ATTR {
         if (perspective)
             return constant ? draw_by_pixels<true, true>(cells, shading, target, items, tile, pending)
                             : draw_by_pixels<true, false>(cells, shading, target, items, tile, pending);
         return constant ? draw_by_pixels<false, true>(cells, shading, target, items, tile, pending)
                         : draw_by_pixels<false, false>(cells, shading, target, items, tile, pending);
     });
+}
+
+void LightOfSegments(const Shading& shading, bool constant, const float* s_f, const float* s_b, const float* length, std::size_t count,
+                     glm::vec4* light) {
+    const hn::CappedTag<float, CellPlanes::columns> d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t begin = 0; begin < count; begin += lanes) {
+        const std::size_t some = HWY_MIN(lanes, count - begin);
+        HWY_ALIGN float in[3][CellPlanes::columns] = {}, out[4 * CellPlanes::columns];
+        std::memcpy(in[0], s_f + begin, some * sizeof(float));
+        std::memcpy(in[1], s_b + begin, some * sizeof(float));
+        std::memcpy(in[2], length + begin, some * sizeof(float));
+        const auto l = shade(d, shading, constant, hn::Load(d, in[0]), hn::Load(d, in[1]), hn::Load(d, in[2]));
+        hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, out);
+        for (std::size_t i = 0; i < some; ++i) light[begin + i] = {out[4 * i], out[4 * i + 1], out[4 * i + 2], out[4 * i + 3]};
+    }
 }
 
 }  // namespace cellproj::cpu::HWY_NAMESPACE
@@ -122,12 +151,13 @@ namespace cellproj::cpu {
 HWY_EXPORT(FindBoxes);
 HWY_EXPORT(DrawTile);
 HWY_EXPORT(DrawTileByPixels);
+HWY_EXPORT(LightOfSegments);
 
 std::size_t find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
-                       std::span<TileBox> boxes, std::span<std::uint32_t, tiles_per_region> counts,
-                       std::span<std::uint8_t> extra_drawn) {
+                       std::span<const std::uint8_t, tiles_per_region> full, std::span<TileBox> boxes,
+                       std::span<std::uint32_t, tiles_per_region> counts, std::span<std::uint8_t> extra_drawn) {
     assert(boxes.size() == items.size() && extra_drawn.size() == cells.extra.size());
-    return HWY_DYNAMIC_DISPATCH(FindBoxes)(cells, region, items, boxes.data(), counts.data(), extra_drawn.data());
+    return HWY_DYNAMIC_DISPATCH(FindBoxes)(cells, region, items, full.data(), boxes.data(), counts.data(), extra_drawn.data());
 }
 
 std::size_t draw_tile(const ScreenCells& cells, const Shading& shading, const Tile& tile, std::span<const std::uint32_t> items) {
@@ -139,6 +169,12 @@ std::size_t draw_tile_by_pixels(const ScreenCells& cells, const Shading& shading
                                 std::span<const std::uint32_t> items, PendingFragments& pending) {
     assert(tile.width <= tile_side && tile.height <= tile_side);
     return HWY_DYNAMIC_DISPATCH(DrawTileByPixels)(cells, shading, tile, items, pending);
+}
+
+void light_of_segments(const Shading& shading, bool constant, std::span<const float> s_f, std::span<const float> s_b,
+                       std::span<const float> length, std::span<glm::vec4> light) {
+    assert(s_f.size() == light.size() && s_b.size() == light.size() && length.size() == light.size());
+    HWY_DYNAMIC_DISPATCH(LightOfSegments)(shading, constant, s_f.data(), s_b.data(), length.data(), light.size(), light.data());
 }
 
 namespace {

@@ -17,6 +17,7 @@
 #include <glm/vec4.hpp>
 
 #include "mesh/tet_mesh.hpp"
+#include "render/cpu/method_tables.hpp"
 #include "render/cpu/piece_arrays.hpp"
 
 namespace cellproj::cpu {
@@ -68,25 +69,32 @@ struct Region {
     int x, y, width, height;  // pixels
 };
 
-// boxes[i] for items[i]; adds to counts[tile], row by row in the region, the number of boxes that meet the tile. Returns the
-// number of whole cells that meet a pixel centre of the region and of none before it; sets extra_drawn (#extra) for the others.
+// boxes[i] for items[i]; adds to counts[tile], row by row in the region, the number of boxes that meet the tile where it is not full.
+// Boxes that meet full tiles only are empty. Returns the number of whole cells that meet a pixel centre of the region's tiles that
+// are not full and of no region before it; sets extra_drawn (#extra) for the others.
 std::size_t find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
-                       std::span<TileBox> boxes, std::span<std::uint32_t, tiles_per_region> counts,
+                       std::span<const std::uint8_t, tiles_per_region> full, std::span<TileBox> boxes, std::span<std::uint32_t, tiles_per_region> counts,
                        std::span<std::uint8_t> extra_drawn);
 
-// How a segment becomes light: by the pieces of the transfer function, or by a function called for each segment.
+// How a segment becomes light: by the pieces of the transfer function or by the tables of a method, one of both.
 struct Shading {
     const PieceArrays* pieces = nullptr;
-    void (*light)(const void* context, float s_f, float s_b, float length, float* rgba) = nullptr;
-    const void* context = nullptr;
-    float opaque = 1;  // behind this opacity nothing is drawn
+    const MethodTables* tables = nullptr;
+    bool half_opacity = false;  // Blending::half
+    float opaque = 1;           // behind this opacity nothing is drawn
 };
+
+// The light of segments as tiles compute it: scalars 0..1, lengths ≥ 0 in scene units, as many of each. `constant`: as for fields
+// on cells, s_f = s_b.
+void light_of_segments(const Shading& shading, bool constant, std::span<const float> s_f, std::span<const float> s_b,
+                       std::span<const float> length, std::span<glm::vec4> light);
 
 // The part of the picture that one task draws.
 struct Tile {
     int x, y, width, height;  // pixels, in the picture; up to tile_side each
     glm::vec4* pixels;        // the picture's pixel (x, y)
     std::size_t stride;       // pixels from row to row
+    std::uint8_t* full = nullptr;  // set to 1 when nothing more can be seen behind what the tile holds
 };
 
 // Composites items, given from back to front, behind what the tile holds already, until nothing can be seen any more. Returns the

@@ -98,6 +98,22 @@ private:
     bool same_;
 };
 
+// The last piece that begins at or below s, per lane.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Vec<hn::RebindToSigned<D>> pieces_of(D d, const PieceArrays& table, V s) {
+    const hn::RebindToSigned<D> di;
+    using VI = hn::Vec<decltype(di)>;
+    const VI bin = hn::ConvertTo(di, hn::Mul(s, hn::Set(d, table.bin_count)));
+    VI first = hn::GatherIndex(di, table.first.data(), bin), last = hn::GatherIndex(di, table.last.data(), bin);
+    while (!hn::AllTrue(di, hn::Eq(first, last))) {
+        const VI middle = hn::ShiftRight<1>(hn::Add(hn::Add(first, last), hn::Set(di, 1)));
+        const auto below = hn::RebindMask(di, hn::Lt(s, hn::GatherIndex(d, table.begin.data(), middle)));
+        last = hn::IfThenElse(below, hn::Sub(middle, hn::Set(di, 1)), last);
+        first = hn::IfThenElse(below, first, middle);
+    }
+    return first;
+}
+
 template <class D, class V = hn::Vec<D>>
 class Walk {
 public:
@@ -116,7 +132,7 @@ public:
         const DI di;
         const V deepest = hn::Set(d_, static_cast<float>(table_.limits.deepest));
         const VI step = hn::IfThenElse(hn::RebindMask(di, rising_), hn::Set(di, 1), hn::Set(di, -1));
-        VI piece = piece_of(from_);
+        VI piece = pieces_of(d_, table_, from_);
         V s = from_;
         M active = hn::Ge(length_, hn::Zero(d_));
         for (int parts = 1;; ++parts) {
@@ -134,20 +150,6 @@ public:
     }
 
 private:
-    // The last piece that begins at or below s.
-    HWY_INLINE VI piece_of(V s) const {
-        const DI di;
-        const VI bin = hn::ConvertTo(di, hn::Mul(s, hn::Set(d_, table_.bin_count)));
-        VI first = hn::GatherIndex(di, table_.first.data(), bin), last = hn::GatherIndex(di, table_.last.data(), bin);
-        while (!hn::AllTrue(di, hn::Eq(first, last))) {
-            const VI middle = hn::ShiftRight<1>(hn::Add(hn::Add(first, last), hn::Set(di, 1)));
-            const auto below = hn::RebindMask(di, hn::Lt(s, hn::GatherIndex(d_, table_.begin.data(), middle)));
-            last = hn::IfThenElse(below, hn::Sub(middle, hn::Set(di, 1)), last);
-            first = hn::IfThenElse(below, first, middle);
-        }
-        return first;
-    }
-
     // A part of a piece, t = 0 .. 1 along it: D(t) = depth·((1 − r)·t + r·t²).
     struct Part {
         V length, depth, r;
@@ -243,7 +245,7 @@ private:
     HWY_INLINE void take_blocks(M active, VI step, VI& piece, V& s) {
         const DI di;
         const VI newest = hn::Set(di, static_cast<std::int32_t>(table_.begin.size()) - 1);
-        const VI last = piece_of(to_), one = hn::Set(di, 1), zero = hn::Zero(di);
+        const VI last = pieces_of(d_, table_, to_), one = hn::Set(di, 1), zero = hn::Zero(di);
         VI count = hn::IfThenElseZero(hn::RebindMask(di, active), hn::Mul(hn::Sub(last, piece), step));
         const auto rising = hn::RebindMask(di, rising_);
         while (!hn::AllFalse(di, hn::Gt(count, one))) {
@@ -344,6 +346,24 @@ HWY_INLINE LightOf<V> light_of_segments(D d, const PieceArrays& table, V s_f, V 
         if (hn::AllTrue(d, hn::Le(depth, hn::Set(d, table.three_point_depth)))) return light;
     }
     return Walk<D>(d, table, s_f, s_b, length).light();
+}
+
+// Segments of one scalar each, for fields on cells: homogeneous media, one exponential.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LightOf<V> light_of_constants(D d, const PieceArrays& table, V s, V length) {
+    const PerLane<D> piece(d, pieces_of(d, table, s));
+    const V one = hn::Set(d, 1.0F);
+    const V t = hn::Mul(hn::Sub(s, piece.of(table.begin)), piece.of(table.inverse_width)), rest = hn::Sub(one, t);
+    const auto mixed = [&](const std::vector<float>& begin, const std::vector<float>& end) HWY_ATTR {
+        return hn::MulAdd(piece.of(end), t, hn::Mul(piece.of(begin), rest));
+    };
+    const V extinction = hn::Max(mixed(table.extinction[0], table.extinction[1]), hn::Zero(d));
+    const V depth = hn::Min(hn::Mul(extinction, length), hn::Set(d, 1e30F));  // as opaque as can be, and not infinite
+    const V transmitted = mean_transmittance(d, depth);
+    const V opacity = hn::Min(hn::Mul(depth, transmitted), one);
+    const V weight = table.density ? opacity : hn::Mul(length, transmitted);
+    return {hn::Mul(weight, mixed(table.color[0][0], table.color[1][0])), hn::Mul(weight, mixed(table.color[0][1], table.color[1][1])),
+            hn::Mul(weight, mixed(table.color[0][2], table.color[1][2])), opacity};
 }
 
 }  // namespace cellproj::cpu::HWY_NAMESPACE

@@ -38,23 +38,32 @@ struct TileState {
     Corners corners;
 };
 
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LightOf<V> shade(D d, const Shading& shading, bool constant, V s_f, V s_b, V length) {
+    const LightOf<V> light = shading.tables ? light_of_tables(d, *shading.tables, s_f, s_b, length)
+                             : constant     ? light_of_constants(d, *shading.pieces, s_f, length)
+                                            : light_of_segments(d, *shading.pieces, s_f, s_b, length);
+    return shading.half_opacity ? half_opacity(d, light) : light;
+}
+
 // Composites the fragments behind what is there, in their order, and forgets them.
-template <bool perspective, class D>
-HWY_NOINLINE void composite(D d, const View& view, const Shading& shading, TileState& tile) {
+template <class D>
+HWY_NOINLINE void composite(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
     const hn::RebindToSigned<D> di;
     using V = hn::Vec<D>;
     Fragments& f = tile.fragments;
     const std::size_t lanes = hn::Lanes(d);
+    const bool constant = !cells.cell_scalars.empty();
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
     for (std::size_t i = 0; i < lanes; ++i) {  // the last vector may be part empty
         f.front[f.count + i] = f.back[f.count + i] = f.length[f.count + i] = 0.0F;
         f.pixel[f.count + i] = 0;
     }
     HWY_ALIGN float light[4 * CellPlanes::columns];
-    const auto unit = hn::Set(d, view.unit_per_pixel);
+    const auto unit = hn::Set(d, cells.view.unit_per_pixel);
     for (std::size_t begin = 0; begin < f.count; begin += lanes) {
         V length = hn::Load(d, f.length + begin);
-        if constexpr (perspective) {  // from the axis to the ray
+        if (cells.view.perspective) {  // from the axis to the ray
             const auto pixel = hn::Load(di, f.pixel + begin);
             const V x = hn::Add(hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_side - 1))), hn::Set(d, tile.x));
             const V y = hn::Add(hn::ConvertTo(d, hn::ShiftRight<5>(pixel)), hn::Set(d, tile.y));
@@ -63,17 +72,8 @@ HWY_NOINLINE void composite(D d, const View& view, const Shading& shading, TileS
         }
         const V s_f = hn::Min(hn::Max(hn::Load(d, f.front + begin), zero), one);
         const V s_b = hn::Min(hn::Max(hn::Load(d, f.back + begin), zero), one);
-        if (shading.pieces) {
-            const LightOf<V> l = light_of_segments(d, *shading.pieces, s_f, s_b, length);
-            hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
-        } else {
-            HWY_ALIGN float lists[3][CellPlanes::columns];
-            hn::Store(s_f, d, lists[0]);
-            hn::Store(s_b, d, lists[1]);
-            hn::Store(length, d, lists[2]);
-            for (std::size_t i = 0; i < lanes; ++i)
-                shading.light(shading.context, lists[0][i], lists[1][i], lists[2][i], light + 4 * i);
-        }
+        const LightOf<V> l = shade(d, shading, constant, s_f, s_b, length);
+        hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
         const std::size_t end = HWY_MIN(lanes, f.count - begin);
         for (std::size_t i = 0; i < end; ++i) {
             float* rgba = tile.rgba[f.pixel[begin + i]];
@@ -197,7 +197,7 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
     std::size_t fragments = 0, since_closing = 0;
     bool seen = close_pixels(tile, shading.opaque, target.width, target.height);
     // Two groups ahead the corners of cells are asked for, one group ahead their points.
-    std::uint32_t group[CellPlanes::columns], next[CellPlanes::columns];
+    std::uint32_t group[CellPlanes::columns], next[CellPlanes::columns] = {};  // the last group may be part empty
     std::size_t left = items.size();
     const auto read = [&](std::uint32_t* into) HWY_ATTR {
         const std::size_t count = HWY_MIN(lanes, left);
@@ -220,7 +220,7 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
             if (tile.fragments.count + most > Fragments::capacity) {
                 fragments += tile.fragments.count;
                 since_closing += tile.fragments.count;
-                composite<perspective>(d, cells.view, shading, tile);
+                composite(d, cells, shading, tile);
                 if (since_closing > 4 * Fragments::capacity) {
                     since_closing = 0;
                     seen = close_pixels(tile, shading.opaque, target.width, target.height);
@@ -230,7 +230,7 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
         }
     }
     fragments += tile.fragments.count;
-    composite<perspective>(d, cells.view, shading, tile);
+    composite(d, cells, shading, tile);
     return fragments;
 }
 
@@ -260,8 +260,8 @@ HWY_INLINE void move_to_pending(Fragments& from, PendingFragments& to) {
 }
 
 // Composites the pending fragments whose key is at least `nearest`, pixel by pixel from front to back; the others stay.
-template <bool perspective, class D>
-HWY_INLINE void composite_pending(D d, const View& view, const Shading& shading, TileState& tile, PendingFragments& pending,
+template <class D>
+HWY_NOINLINE void composite_pending(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, PendingFragments& pending,
                                   float nearest) {
     constexpr std::size_t pixels = tile_side * tile_side;
     std::uint32_t first[pixels + 1] = {};
@@ -298,10 +298,10 @@ HWY_INLINE void composite_pending(D d, const View& view, const Shading& shading,
             f.back[f.count] = pending.back[fragment];
             f.length[f.count] = pending.length[fragment];
             f.pixel[f.count] = pending.pixel[fragment];
-            if (++f.count == Fragments::capacity) composite<perspective>(d, view, shading, tile);
+            if (++f.count == Fragments::capacity) composite(d, cells, shading, tile);
         }
     }
-    composite<perspective>(d, view, shading, tile);
+    composite(d, cells, shading, tile);
     for (std::size_t i = 0; i < count; ++i) {
         if (pending.key[i] >= nearest) continue;
         pending.front[kept] = pending.front[i];
@@ -342,13 +342,13 @@ HWY_INLINE std::size_t draw_by_pixels(const ScreenCells& cells, const Shading& s
         if (pending.key.size() < enough) continue;
         fragments += tile.fragments.count;
         move_to_pending(tile.fragments, pending);
-        composite_pending<perspective>(d, cells.view, shading, tile, pending, pending.nearest[group + 1]);
+        composite_pending(d, cells, shading, tile, pending, pending.nearest[group + 1]);
         seen = close_pixels(tile, shading.opaque, target.width, target.height);
         enough = HWY_MAX(8 * Fragments::capacity, 2 * pending.key.size());
     }
     fragments += tile.fragments.count;
     move_to_pending(tile.fragments, pending);
-    composite_pending<perspective>(d, cells.view, shading, tile, pending, -1e35F);
+    composite_pending(d, cells, shading, tile, pending, -1e35F);
     return fragments;
 }
 
