@@ -54,6 +54,16 @@ inline bool light_at_vertices(const Method& method) {
     return method.kind == MethodKind::shirley_tuchman || method.interpolation == Interpolation::vertices;
 }
 
+// Whether the method can take colour and extinction from two scalars: those that sample the function or walk through its pieces for
+// each pixel. Tables over (s_f, s_b) would need two more axes.
+inline bool takes_opacity_field(const Method& method) {
+    const bool table = method.kind == MethodKind::preint2d || method.kind == MethodKind::preint2d_exp ||
+                       method.kind == MethodKind::preint3d;
+    return !table && !light_at_vertices(method);
+}
+// Throws Error (option), naming `place`, unless it can.
+void require_takes_opacity_field(const Method& method, const std::string& place = "method");
+
 // From "NAME" or "NAME:PART:PART…", parts in any order: "integral", "preint3d:128:linear:uint8", "linear:8:vertices",
 // "average:half", "exact:1e-6". What is not said has its default. Throws Error (option), naming `place`, for an unknown
 // name or part (the nearest known one is told), a part that the method has no use for, and a number out of its range.

@@ -37,4 +37,10 @@ std::unique_ptr<SegmentMethod> make_segment_method(const Method& method, const T
 // in the new scale keep the outermost two.
 TransferFunction in_scene_units(const TransferFunction& transfer, double scalar_low, double scalar_high, double length);
 
+// The same where colour and extinction are functions of two scalars, each with its own range as 0..1.
+struct ScalarSpan {
+    double low, high;  // finite, low ≤ high
+};
+TransferFunction in_scene_units(const TransferFunction& transfer, ScalarSpan color, ScalarSpan extinction, double length);
+
 }  // namespace cellproj

@@ -325,6 +325,14 @@ std::vector<ExtinctionNode> extinction_from_opacity(const std::vector<OpacityNod
     return on_axis(std::move(nodes), axis, place);
 }
 
+TransferFunction color_alone(const TransferFunction& function) {
+    return {OpticalModel::emitter, function.color_nodes(), {{0.0, 0.0}}, function.outside()};
+}
+
+TransferFunction extinction_alone(const TransferFunction& function) {
+    return {OpticalModel::density, {{0.0, glm::dvec3(0.0)}}, function.extinction_nodes(), function.outside()};
+}
+
 TransferFunction with_scaled_extinction(const TransferFunction& function, double factor) {
     assert(factor >= 0.0);
     std::vector<ExtinctionNode> extinction = function.extinction_nodes();

@@ -125,6 +125,11 @@ std::vector<ExtinctionNode> on_axis(std::vector<ExtinctionNode> nodes, ScalarAxi
 // with it. Throws Error (data) when an extinction grows past 1e60.
 TransferFunction with_scaled_extinction(const TransferFunction& function, double factor);
 
+// The two parts of a function by themselves, for who reads them over two scalars: what shines as `color` says and absorbs nothing (an
+// emitter), and what absorbs and is black.
+TransferFunction color_alone(const TransferFunction& function);
+TransferFunction extinction_alone(const TransferFunction& function);
+
 // Extinction nodes for an opacity that is linear between its nodes along the axis. With the exponential convention τ(s) is
 // curved between nodes: nodes are inserted until the piecewise-linear τ·u is within 1e-3 of −ln(1 − α) everywhere. α = 1 would
 // be an infinite extinction; it counts as 1 − 2⁻²⁴, the last opacity that float32 can tell from 1. Where float64 has no scalar left

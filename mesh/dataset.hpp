@@ -12,6 +12,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "mesh/grid_axis.hpp"
 #include "mesh/tet_mesh.hpp"
 
 namespace cellproj {
@@ -46,12 +47,20 @@ struct GridDimensions {
     std::size_t cells() const { return (ni - 1) * (nj - 1) * (nk - 1); }
 };
 
+// What is regular in a file of boxes along x, y and z: an image, a rectilinear grid, voxels. As the file has it, so axes may
+// descend or be no axes at all; mesh/grid.hpp makes a sound grid of it.
+struct BoxGrid {
+    std::array<GridAxis, 3> axes;
+    std::vector<std::uint8_t> blanked;  // 1 for a cell of the file that is left out, i fastest; empty when none is
+};
+
 struct Dataset {
     std::string source;                        // the file, for messages
     std::string format;                        // in words: "VTK XML unstructured grid"
     std::vector<glm::dvec3> points;            // #P [mesh units]
     std::optional<GridDimensions> grid;        // set for a curvilinear grid; then `cells` is empty
     CellList cells;                            // set otherwise
+    std::optional<BoxGrid> boxes;              // set when the cells are those of one grid along x, y and z
     std::vector<Field> point_fields;           // each with #P rows
     std::vector<Field> cell_fields;            // each with one row per cell
     std::size_t skipped_cells = 0;             // cells that are no volumes: points, lines, surfaces

@@ -42,6 +42,27 @@ std::optional<T> take_optional(ByteReader& reader, const char* what) {
     return numbers.empty() ? std::nullopt : std::optional<T>(numbers.front());
 }
 
+void put_boxes(ByteWriter& writer, const std::optional<BoxGrid>& boxes) {
+    writer.value(boxes.has_value());
+    if (!boxes) return;
+    for (const GridAxis& axis : boxes->axes) {
+        writer.array(axis.coordinates);
+        put_optional(writer, axis.spacing);
+    }
+    writer.array(boxes->blanked);
+}
+
+std::optional<BoxGrid> take_boxes(ByteReader& reader) {
+    if (!reader.value<bool>("whether there is a grid of boxes")) return std::nullopt;
+    BoxGrid boxes;
+    for (GridAxis& axis : boxes.axes) {
+        axis.coordinates = reader.array<double>("axis");
+        axis.spacing = take_optional<double>(reader, "spacing");
+    }
+    boxes.blanked = reader.array<std::uint8_t>("blanked cells");
+    return boxes;
+}
+
 }  // namespace
 
 void put(ByteWriter& writer, Dataset&& dataset) {
@@ -52,6 +73,7 @@ void put(ByteWriter& writer, Dataset&& dataset) {
     put_and_free(writer, dataset.cells.kinds);
     put_and_free(writer, dataset.cells.offsets);
     put_and_free(writer, dataset.cells.vertices);
+    put_boxes(writer, dataset.boxes);
     put_fields(writer, dataset.point_fields);
     put_fields(writer, dataset.cell_fields);
     writer.value(dataset.skipped_cells);
@@ -72,6 +94,7 @@ void take(ByteReader& reader, Dataset& dataset) {
     dataset.cells.kinds = reader.array<CellKind>("kinds");
     dataset.cells.offsets = reader.array<std::uint64_t>("offsets");
     dataset.cells.vertices = reader.array<VertexId>("vertices");
+    dataset.boxes = take_boxes(reader);
     dataset.point_fields = take_fields(reader);
     dataset.cell_fields = take_fields(reader);
     dataset.skipped_cells = reader.value<std::size_t>("skipped cells");

@@ -62,6 +62,7 @@ void leave_out_cells(Dataset& dataset, const std::vector<bool>& hidden) {
     keep_rows(dataset.cell_fields, rows);
     dataset.cells = std::move(kept);
     dataset.grid.reset();
+    if (dataset.boxes) dataset.boxes->blanked.assign(hidden.begin(), hidden.end());
     dataset.ghost_cells += count;
     drop_unused_points(dataset);
 }

@@ -93,6 +93,9 @@ Dataset read_raw(const fs::path& file, const RawVolume& raw) {
                 dataset.points.push_back(raw.origin + glm::dvec3(i, j, k) * raw.spacing);
         }
     }
+    dataset.boxes = BoxGrid{{uniform_axis(raw.origin.x, raw.spacing.x, n.ni), uniform_axis(raw.origin.y, raw.spacing.y, n.nj),
+                             uniform_axis(raw.origin.z, raw.spacing.z, n.nk)},
+                            {}};
     const std::size_t width = bytes_of(raw.type);
     const std::string bytes = read_bytes(file, raw.header_bytes, dataset.points.size() * width);
     if (bytes.size() != dataset.points.size() * width) {

@@ -2,6 +2,7 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkRectilinearGrid.h>
@@ -12,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "mesh/error.hpp"
 #include "mesh/hidden_cells.hpp"
@@ -89,6 +91,21 @@ std::vector<glm::dvec3> points_of(vtkDataSet& grid, const fs::path& file) {
     return points;
 }
 
+// The axes of a rectilinear grid or of an image that is not turned, from the points they gave.
+std::optional<BoxGrid> boxes_of(vtkDataSet& grid, const GridDimensions& n, const std::vector<glm::dvec3>& points) {
+    auto* image = vtkImageData::SafeDownCast(&grid);
+    if (!image && !vtkRectilinearGrid::SafeDownCast(&grid)) return std::nullopt;
+    if (image && !image->GetDirectionMatrix()->IsIdentity()) return std::nullopt;
+    BoxGrid boxes;
+    const std::array<std::size_t, 3> counts{n.ni, n.nj, n.nk}, strides{1, n.ni, n.ni * n.nj};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < counts[axis]; ++i)
+            boxes.axes[axis].coordinates.push_back(points[i * strides[axis]][static_cast<int>(axis)]);
+        if (image) boxes.axes[axis].spacing = image->GetSpacing()[axis];
+    }
+    return boxes;
+}
+
 bool is_visible(vtkDataSet& grid, vtkIdType cell) {
     if (auto* curvilinear = vtkStructuredGrid::SafeDownCast(&grid)) return curvilinear->IsCellVisible(cell) != 0;
     if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(&grid)) return rectilinear->IsCellVisible(cell) != 0;
@@ -123,6 +140,7 @@ Dataset structured_to_dataset(vtkDataSet& grid, const fs::path& file, const std:
     dataset.format = format;
     dataset.grid = require_volume(grid, file);
     dataset.points = points_of(grid, file);
+    dataset.boxes = boxes_of(grid, *dataset.grid, dataset.points);
     const auto whole = [](vtkDataArray& array, const std::string& name) { return to_field(array, name); };
     dataset.point_fields = to_fields(*grid.GetPointData(), dataset.points.size(), file, whole);
     dataset.cell_fields = to_fields(*grid.GetCellData(), dataset.grid->cells(), file, whole);

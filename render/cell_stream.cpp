@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -70,6 +71,21 @@ void append(std::span<const Corner> vertices, std::span<const std::array<std::ui
     }
 }
 
+void set_plane(float* floats, const ScreenPlane& plane) {
+    floats[0] = static_cast<float>(plane.value);
+    floats[1] = static_cast<float>(plane.gradient.x);
+    floats[2] = static_cast<float>(plane.gradient.y);
+}
+
+void set_triangle_terms(const Silhouette& silhouette, std::size_t triangle, StreamVertex& vertex) {
+    const SilhouetteTerms& terms = silhouette.terms[triangle];
+    set_plane(vertex.base_depth, terms.base_depth);
+    set_plane(vertex.base_scalar, terms.base_scalar);
+    for (std::size_t ridge = 0; ridge < 3; ++ridge) set_plane(vertex.thickness[ridge], terms.thickness[ridge]);
+    vertex.origin_x = static_cast<float>(silhouette.origin.x);
+    vertex.origin_y = static_cast<float>(silhouette.origin.y);
+}
+
 // A vertex of the classical split in float64, with what is interpolated.
 struct LitCorner {
     glm::dvec2 position;
@@ -92,9 +108,11 @@ CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, Imag
 
     const TetMesh& mesh = *prepared.scene().mesh;
     const ScalarField& field = *prepared.scene().field;
+    const ScalarField* opacity = prepared.scene().opacity_field.get();
     const SceneUnits& units = prepared.units();
     points_.resize(mesh.points.size());
     scalars_.resize(field.values.size());
+    opacity_scalars_.resize(opacity ? opacity->values.size() : 0);
     using Range = oneapi::tbb::blocked_range<std::size_t>;
     oneapi::tbb::parallel_for(Range(0, points_.size(), 4096), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -106,6 +124,10 @@ CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, Imag
     oneapi::tbb::parallel_for(Range(0, scalars_.size(), 4096), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) scalars_[i] = units.normalized(field.values[i]);
     });
+    oneapi::tbb::parallel_for(Range(0, opacity_scalars_.size(), 4096), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            opacity_scalars_[i] = units.normalized_opacity(opacity->values[i]);
+    });
 }
 
 // Calls draw(corners) for every visible cell or, where it is split or cut by the near plane, for its pieces; it says whether
@@ -114,7 +136,7 @@ template <class Vertex, class Draw>
 void CellStream::for_each_piece(const ViewOrder& order, Triangles<Vertex>& batch, Draw draw) const {
     const auto& visible = prepared_.visible();
     const auto cells = static_cast<std::uint32_t>(visible.size());
-    const auto draw_clipped = [&](const std::array<EyeVertex, 4>& corners) {
+    const auto draw_clipped = [&](const EyeCorners& corners) {
         const Pieces pieces = clipped(corners);
         bool drawn = false;
         for (std::size_t piece = 0; piece < pieces.count; ++piece) drawn |= draw(pieces.corners[piece]);
@@ -136,6 +158,10 @@ void CellStream::project(const ViewOrder& order, TriangleBatch& batch) const {
     for_each_piece(order, batch, [&](const Corners& corners) { return project_corners(corners, batch); });
 }
 
+void CellStream::project(const ViewOrder& order, TwoFieldBatch& batch) const {
+    for_each_piece(order, batch, [&](const Corners& corners) { return project_corners(corners, batch); });
+}
+
 void CellStream::project(const ViewOrder& order, const VertexLighting& lighting, LitBatch& batch) const {
     for_each_piece(order, batch, [&](const Corners& corners) { return light_corners(corners, lighting, batch); });
 }
@@ -145,9 +171,22 @@ CellStream::ScreenPoint CellStream::on_screen(const glm::dvec3& p) const {
     return {snapped, glm::vec2(snapped - place), transform_.perspective() ? 1.0 / p.z : p.z};
 }
 
-void CellStream::set_corner(Corners& corners, std::size_t i, const ScreenPoint& point, double scalar) const {
-    corners.vertices[i] = {point.position, point.depth, transform_.perspective() ? scalar * point.depth : scalar};
+void CellStream::set_corner(Corners& corners, std::size_t i, const ScreenPoint& point, double scalar, double opacity_scalar) const {
+    const double factor = transform_.perspective() ? point.depth : 1.0;
+    corners.vertices[i] = {point.position, point.depth, scalar * factor};
     corners.moved[i] = point.moved;
+    corners.opacity_scalars[i] = opacity_scalar * factor;
+}
+
+std::array<ScreenVertex, 4> CellStream::Corners::with_opacity_scalars() const {
+    std::array<ScreenVertex, 4> result = vertices;
+    for (std::size_t i = 0; i < 4; ++i) result[i].scalar = opacity_scalars[i];
+    return result;
+}
+
+double CellStream::opacity_scalar(CellId cell, VertexId vertex) const {
+    if (opacity_scalars_.empty()) return 0.0;
+    return opacity_scalars_[prepared_.scene().opacity_field->location == FieldLocation::points ? vertex : cell];
 }
 
 // False when a corner lies behind the near plane.
@@ -158,84 +197,142 @@ bool CellStream::load(CellId cell, Corners& corners) const {
         const ScreenPoint& p = points_[tet[i]];
         const double scalar = scalars_[per_point ? tet[i] : cell];
         if (transform_.perspective() && p.depth == 0.0) return false;
-        set_corner(corners, i, p, scalar);
+        set_corner(corners, i, p, scalar, opacity_scalar(cell, tet[i]));
     }
     return true;
 }
 
-std::array<EyeVertex, 4> CellStream::eye_corners(CellId cell) const {
+CellStream::EyeCorners CellStream::eye_corners(CellId cell) const {
     const TetMesh& mesh = *prepared_.scene().mesh;
     const bool per_point = prepared_.scene().field->location == FieldLocation::points;
-    std::array<EyeVertex, 4> corners;
+    EyeCorners corners;
     for (std::size_t i = 0; i < 4; ++i) {
         const VertexId v = mesh.tets[cell][i];
-        corners[i] = {transform_.to_eye((mesh.points[v] - eye_) / prepared_.units().length), scalars_[per_point ? v : cell]};
+        const glm::dvec3 p = transform_.to_eye((mesh.points[v] - eye_) / prepared_.units().length);
+        corners.vertices[i] = {p, scalars_[per_point ? v : cell]};
+        corners.opacity_scalars[i] = opacity_scalar(cell, v);
     }
     return corners;
 }
 
-// Position and scalar are linear in space: both are mixed by the same weights.
-std::array<EyeVertex, 4> CellStream::eye_corners(const CellPiece& piece) const {
-    const std::array<EyeVertex, 4> cell = eye_corners(piece.cell);
-    std::array<EyeVertex, 4> corners;
+// Position and scalars are linear in space: all are mixed by the same weights.
+CellStream::EyeCorners CellStream::eye_corners(const CellPiece& piece) const {
+    const EyeCorners cell = eye_corners(piece.cell);
+    EyeCorners corners;
     for (std::size_t i = 0; i < 4; ++i) {
-        corners[i] = {glm::dvec3(0.0), 0.0};
+        corners.vertices[i] = {glm::dvec3(0.0), 0.0};
+        corners.opacity_scalars[i] = 0.0;
         for (int v = 0; v < 4; ++v) {
-            const EyeVertex& vertex = cell[static_cast<std::size_t>(v)];
-            corners[i].position += piece.corners[i][v] * vertex.position;
-            corners[i].scalar += piece.corners[i][v] * vertex.scalar;
+            const auto corner = static_cast<std::size_t>(v);
+            corners.vertices[i].position += piece.corners[i][v] * cell.vertices[corner].position;
+            corners.vertices[i].scalar += piece.corners[i][v] * cell.vertices[corner].scalar;
+            corners.opacity_scalars[i] += piece.corners[i][v] * cell.opacity_scalars[corner];
         }
     }
     return corners;
 }
 
 // The part in front of the near plane, on the screen.
-CellStream::Pieces CellStream::clipped(const std::array<EyeVertex, 4>& corners) const {
+CellStream::Pieces CellStream::clipped(const EyeCorners& corners) const {
     if (!transform_.perspective()) {
         Pieces whole{1, {}};
-        for (std::size_t i = 0; i < 4; ++i) set_corner(whole.corners[0], i, on_screen(corners[i].position), corners[i].scalar);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const EyeVertex& v = corners.vertices[i];
+            set_corner(whole.corners[0], i, on_screen(v.position), v.scalar, corners.opacity_scalars[i]);
+        }
         return whole;
     }
-    const ClippedTet tets = clip_near(corners, near_depth_);
+    const ClippedTet tets = clip_near(corners.vertices, near_depth_);
+    // Clipping follows positions alone: once more gives the same corners with the other scalar.
+    ClippedTet opacity = tets;
+    if (!opacity_scalars_.empty()) {
+        EyeCorners other = corners;
+        for (std::size_t i = 0; i < 4; ++i) other.vertices[i].scalar = corners.opacity_scalars[i];
+        opacity = clip_near(other.vertices, near_depth_);
+    }
     Pieces pieces{tets.count, {}};
     for (std::size_t piece = 0; piece < tets.count; ++piece) {
         for (std::size_t i = 0; i < 4; ++i) {
             const EyeVertex& v = tets.tets[piece][i];
-            set_corner(pieces.corners[piece], i, on_screen(v.position), v.scalar);
+            set_corner(pieces.corners[piece], i, on_screen(v.position), v.scalar, opacity.tets[piece][i].scalar);
         }
     }
     return pieces;
 }
 
-bool CellStream::project_corners(const Corners& corners, TriangleBatch& batch) const {
+// Of a cell, a triangle of it and a corner there, one after the other: all but what the ones after it set.
+template <class Vertex>
+class CellStream::VertexMaker {
+public:
+    VertexMaker(const CellStream& stream, const Corners& corners, const glm::dvec2& origin)
+        : stream_(stream),
+          silhouette_(make_silhouette(corners.vertices, corners.moved, origin, stream.transform_.perspective())) {
+        if (silhouette_.triangle_count == 0) return;
+        stream.set_cell_constants(corners.vertices, silhouette_, vertex_);
+        if constexpr (has_opacity) set_opacity_constants(corners);
+    }
+
+    const Silhouette& silhouette() const { return silhouette_; }
+
+    void begin_triangle(std::size_t triangle) {
+        set_triangle_terms(silhouette_, triangle, vertex_);
+        if constexpr (has_opacity) set_plane(vertex_.base_opacity, opacity_silhouette_.terms[triangle].base_scalar);
+    }
+
+    Vertex at(const SilhouetteVertex& v) {
+        stream_.set_place(v, vertex_);
+        return vertex_;
+    }
+
+private:
+    static constexpr bool has_opacity = std::is_same_v<Vertex, TwoFieldVertex>;
+
+    // The silhouette of the same cell with the other scalar differs in nothing else.
+    void set_opacity_constants(const Corners& corners) {
+        const auto with_opacity = corners.with_opacity_scalars();
+        opacity_silhouette_ =
+            make_silhouette(with_opacity, corners.moved, silhouette_.origin, stream_.transform_.perspective());
+        StreamVertex constants{};
+        stream_.set_cell_constants(with_opacity, opacity_silhouette_, constants);
+        vertex_.opacity_slope = constants.scalar_slope;
+        vertex_.opacity_low = constants.scalar_low;
+        vertex_.opacity_high = constants.scalar_high;
+    }
+
+    const CellStream& stream_;
+    Silhouette silhouette_, opacity_silhouette_;
+    Vertex vertex_{};
+};
+
+template <class Vertex>
+bool CellStream::project_corners(const Corners& corners, Triangles<Vertex>& batch) const {
     const Rectangle box = bounding_box(corners.vertices);
     if (!covers_pixel(box)) return false;
-    const Silhouette silhouette =
-        make_silhouette(corners.vertices, corners.moved, origin_for(box), transform_.perspective());
+    VertexMaker<Vertex> make(*this, corners, origin_for(box));
+    const Silhouette& silhouette = make.silhouette();
     if (silhouette.triangle_count == 0) return false;
 
-    const StreamVertex constants = cell_constants(corners.vertices, silhouette);
     const bool cut = !inside(guard_, box);
     if (!cut && silhouette.triangle_count == 2) {
         // What belongs to a triangle is read at its last vertex: four serve both.
         const auto first = static_cast<std::uint32_t>(batch.vertices.size());
         batch.vertices.resize(first + 4);
         for (std::size_t t = 0; t < 2; ++t) {
-            const StreamVertex terms = triangle_terms(silhouette, t, constants);
+            make.begin_triangle(t);
             for (const std::uint8_t corner : silhouette.triangles[t]) {
-                batch.vertices[first + corner] = stream_vertex(silhouette.vertices[corner], terms);
+                batch.vertices[first + corner] = make.at(silhouette.vertices[corner]);
                 batch.indices.push_back(first + corner);
             }
         }
         return true;
     }
     for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {
-        const StreamVertex terms = triangle_terms(silhouette, t, constants);
+        make.begin_triangle(t);
         const auto& [a, b, c] = silhouette.triangles[t];
         const std::array vertices{silhouette.vertices[a], silhouette.vertices[b], silhouette.vertices[c]};
         constexpr std::array<std::array<std::uint8_t, 3>, 1> triangle{{{0, 1, 2}}};
         append(std::span<const SilhouetteVertex>(vertices), std::span(triangle), cut, guard_, batch,
-               [&](const SilhouetteVertex& v) { return stream_vertex(v, terms); });
+               [&](const SilhouetteVertex& v) { return make.at(v); });
     }
     return true;
 }
@@ -302,7 +399,8 @@ glm::vec2 CellStream::clip_space(const glm::dvec2& position) const {
 }
 
 // The part of a vertex that is equal for a whole cell.
-StreamVertex CellStream::cell_constants(const std::array<ScreenVertex, 4>& corners, const Silhouette& silhouette) const {
+void CellStream::set_cell_constants(const std::array<ScreenVertex, 4>& corners, const Silhouette& silhouette,
+                                    StreamVertex& constants) const {
     const bool perspective = transform_.perspective();
     const auto depth = [&](const ScreenVertex& v) { return perspective ? 1.0 / v.depth : v.depth; };
     const auto scalar = [&](const ScreenVertex& v) { return perspective ? v.scalar / v.depth : v.scalar; };
@@ -315,13 +413,11 @@ StreamVertex CellStream::cell_constants(const std::array<ScreenVertex, 4>& corne
     }
     // A ray that enters at the near plane counts from the eye on.
     if (perspective && near <= near_depth_ * 1.0001) near = 0.0;
-    StreamVertex constants{};
     // The slope of a nearly flat cell must stay finite: infinity times no thickness is not a number.
     constants.scalar_slope = static_cast<float>(std::clamp(silhouette.scalar_slope, -1e30, 1e30));
     constants.scalar_low = static_cast<float>(low);
     constants.scalar_high = static_cast<float>(high);
     constants.depth_range = static_cast<float>(silhouette.base_is_front ? far - near : near - far);
-    return constants;
 }
 
 // The pixel of the picture nearest to the middle of the box.
@@ -330,29 +426,11 @@ glm::dvec2 CellStream::origin_for(const Rectangle& box) const {
     return glm::clamp(glm::floor(0.5 * (box.low + box.high)), glm::dvec2(0.0), picture - 1.0) + 0.5;
 }
 
-StreamVertex CellStream::triangle_terms(const Silhouette& silhouette, std::size_t triangle, const StreamVertex& constants) const {
-    const auto set = [](float* floats, const ScreenPlane& plane) {
-        floats[0] = static_cast<float>(plane.value);
-        floats[1] = static_cast<float>(plane.gradient.x);
-        floats[2] = static_cast<float>(plane.gradient.y);
-    };
-    const SilhouetteTerms& terms = silhouette.terms[triangle];
-    StreamVertex out = constants;
-    set(out.base_depth, terms.base_depth);
-    set(out.base_scalar, terms.base_scalar);
-    for (std::size_t ridge = 0; ridge < 3; ++ridge) set(out.thickness[ridge], terms.thickness[ridge]);
-    out.origin_x = static_cast<float>(silhouette.origin.x);
-    out.origin_y = static_cast<float>(silhouette.origin.y);
-    return out;
-}
-
-StreamVertex CellStream::stream_vertex(const SilhouetteVertex& v, const StreamVertex& terms) const {
+void CellStream::set_place(const SilhouetteVertex& v, StreamVertex& vertex) const {
     const glm::vec2 position = clip_space(v.position);
-    StreamVertex out = terms;
-    out.x = position.x;
-    out.y = position.y;
-    for (int ridge = 0; ridge < 3; ++ridge) out.ridges[ridge] = static_cast<float>(v.ridges[ridge]);
-    return out;
+    vertex.x = position.x;
+    vertex.y = position.y;
+    for (int ridge = 0; ridge < 3; ++ridge) vertex.ridges[ridge] = static_cast<float>(v.ridges[ridge]);
 }
 
 }  // namespace cellproj

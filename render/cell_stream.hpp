@@ -31,6 +31,12 @@ struct StreamVertex {
     float depth_range;              // largest minus smallest depth; negative when the base is the back
 };
 
+// The same with a second field for the opacity: its scalar on the base, as a plane, and what else StreamVertex says of the first.
+struct TwoFieldVertex : StreamVertex {
+    float base_opacity[3], opacity_slope;
+    float opacity_low, opacity_high;
+};
+
 // A vertex of the classical split with its light (classify/vertex_light.hpp). The last three are equal at all vertices of a cell.
 struct LitVertex {
     float x, y;
@@ -56,6 +62,7 @@ struct Triangles {
     }
 };
 using TriangleBatch = Triangles<StreamVertex>;
+using TwoFieldBatch = Triangles<TwoFieldVertex>;
 using LitBatch = Triangles<LitVertex>;
 
 // The mesh as one camera sees it. Every point is transformed once.
@@ -66,6 +73,8 @@ public:
     // Appends the triangles of cells and pieces of cells, in their order. Those that cannot be seen, lie outside the view, or fall
     // between pixel centres add nothing.
     void project(const ViewOrder& order, TriangleBatch& batch) const;
+    // The same for a scene with an opacity field.
+    void project(const ViewOrder& order, TwoFieldBatch& batch) const;
     // The same as the classical split, with light at its vertices.
     void project(const ViewOrder& order, const VertexLighting& lighting, LitBatch& batch) const;
 
@@ -79,6 +88,14 @@ private:
     struct Corners {
         std::array<ScreenVertex, 4> vertices;  // on the rasterizer's grid
         std::array<glm::dvec2, 4> moved;       // how far to get there [pixels]
+        std::array<double, 4> opacity_scalars; // scalar terms of the opacity field, where there is one
+
+        std::array<ScreenVertex, 4> with_opacity_scalars() const;
+    };
+    // Corners of a cell before they are seen on the screen.
+    struct EyeCorners {
+        std::array<EyeVertex, 4> vertices;
+        std::array<double, 4> opacity_scalars;
     };
 
     struct Pieces {
@@ -95,20 +112,23 @@ private:
     };
 
     ScreenPoint on_screen(const glm::dvec3& eye_point) const;
-    void set_corner(Corners& corners, std::size_t i, const ScreenPoint& point, double scalar) const;
+    void set_corner(Corners& corners, std::size_t i, const ScreenPoint& point, double scalar, double opacity_scalar) const;
+    double opacity_scalar(CellId cell, VertexId vertex) const;
     bool load(CellId cell, Corners& corners) const;
-    std::array<EyeVertex, 4> eye_corners(CellId cell) const;
-    std::array<EyeVertex, 4> eye_corners(const CellPiece& piece) const;
-    Pieces clipped(const std::array<EyeVertex, 4>& corners) const;
-    bool project_corners(const Corners& corners, TriangleBatch& batch) const;
+    EyeCorners eye_corners(CellId cell) const;
+    EyeCorners eye_corners(const CellPiece& piece) const;
+    Pieces clipped(const EyeCorners& corners) const;
+    template <class Vertex>
+    class VertexMaker;
+    template <class Vertex>
+    bool project_corners(const Corners& corners, Triangles<Vertex>& batch) const;
     bool light_corners(const Corners& corners, const VertexLighting& lighting, LitBatch& batch) const;
     VertexLight light_at(const ProjectedVertex& thick, const VertexLighting& lighting) const;
     bool covers_pixel(const Rectangle& box) const;
     glm::vec2 clip_space(const glm::dvec2& position) const;
-    StreamVertex cell_constants(const std::array<ScreenVertex, 4>& corners, const Silhouette& silhouette) const;
+    void set_cell_constants(const std::array<ScreenVertex, 4>& corners, const Silhouette& silhouette, StreamVertex& constants) const;
     glm::dvec2 origin_for(const Rectangle& box) const;
-    StreamVertex triangle_terms(const Silhouette& silhouette, std::size_t triangle, const StreamVertex& constants) const;
-    StreamVertex stream_vertex(const SilhouetteVertex& v, const StreamVertex& terms) const;
+    void set_place(const SilhouetteVertex& v, StreamVertex& vertex) const;
 
     const PreparedScene& prepared_;
     glm::dvec3 eye_;
@@ -117,6 +137,7 @@ private:
     Rectangle guard_;                   // triangles that reach beyond are clipped
     std::vector<ScreenPoint> points_;   // #P
     std::vector<double> scalars_;       // #P or #T, normalized
+    std::vector<double> opacity_scalars_;  // likewise of the opacity field; empty without one
 };
 
 }  // namespace cellproj

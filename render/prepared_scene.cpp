@@ -22,7 +22,13 @@ SceneUnits find_units(const Scene& scene) {
     validate(scene);
     const ScalarRange values = range(scene.field->values);
     const double half_diagonal = bounds(scene.mesh->points).diagonal() / 2;
-    return {half_diagonal > 0 ? half_diagonal : 1.0, values.low, values.high};
+    SceneUnits units{half_diagonal > 0 ? half_diagonal : 1.0, values.low, values.high};
+    if (scene.opacity_field) {
+        const ScalarRange opacity = range(scene.opacity_field->values);
+        units.opacity_low = opacity.low;
+        units.opacity_high = opacity.high;
+    }
+    return units;
 }
 
 double find_mean_chord(const TetMesh& mesh, double unit) {
@@ -44,11 +50,28 @@ struct ScalarInterval {
     double low, high;
 };
 
+// A field and its range, as the transfer function is asked for it.
+struct RangedField {
+    const TetMesh& mesh;
+    const ScalarField& field;
+    ScalarInterval range;
+
+    double normalized(double s) const { return range.high > range.low ? (s - range.low) / (range.high - range.low) : 0.0; }
+};
+
+RangedField main_field(const Scene& scene, const SceneUnits& units) {
+    return {*scene.mesh, *scene.field, {units.scalar_low, units.scalar_high}};
+}
+
+RangedField opacity_field(const Scene& scene, const SceneUnits& units) {
+    return {*scene.mesh, *scene.opacity_field, {units.opacity_low, units.opacity_high}};
+}
+
 // The scalars of a cell; nothing when one is not finite.
-std::optional<ScalarInterval> scalars_of(const Scene& scene, std::size_t cell) {
-    double low = scene.field->at(*scene.mesh, static_cast<CellId>(cell), 0), high = low, sum = low;
+std::optional<ScalarInterval> scalars_of(const RangedField& field, std::size_t cell) {
+    double low = field.field.at(field.mesh, static_cast<CellId>(cell), 0), high = low, sum = low;
     for (int corner = 1; corner < 4; ++corner) {
-        const double s = scene.field->at(*scene.mesh, static_cast<CellId>(cell), corner);
+        const double s = field.field.at(field.mesh, static_cast<CellId>(cell), corner);
         low = std::min(low, s);
         high = std::max(high, s);
         sum += 0.25 * s;
@@ -59,8 +82,8 @@ std::optional<ScalarInterval> scalars_of(const Scene& scene, std::size_t cell) {
 // The field's range in bins: another transfer function is asked once per bin and, where that does not tell, for a cell.
 constexpr std::uint16_t bin_count = 4096;
 
-std::uint16_t bin_of(const SceneUnits& units, double s) {
-    return static_cast<std::uint16_t>(std::clamp(units.normalized(s), 0.0, 1.0) * (bin_count - 1));
+std::uint16_t bin_of(const RangedField& field, double s) {
+    return static_cast<std::uint16_t>(std::clamp(field.normalized(s), 0.0, 1.0) * (bin_count - 1));
 }
 
 template <class Body>
@@ -71,11 +94,11 @@ void for_all(std::size_t count, Body body) {
     });
 }
 
-std::vector<PreparedScene::BinRange> find_bins(const Scene& scene, const SceneUnits& units) {
-    std::vector<PreparedScene::BinRange> bins(scene.mesh->tets.size());
+std::vector<PreparedScene::BinRange> find_bins(const RangedField& field) {
+    std::vector<PreparedScene::BinRange> bins(field.mesh.tets.size());
     for_all(bins.size(), [&](std::size_t cell) {
-        const auto s = scalars_of(scene, cell);
-        if (s) bins[cell] = {bin_of(units, s->low), bin_of(units, s->high)};
+        const auto s = scalars_of(field, cell);
+        if (s) bins[cell] = {bin_of(field, s->low), bin_of(field, s->high)};
     });
     return bins;
 }
@@ -86,12 +109,12 @@ struct VisibleBins {
     std::vector<std::uint16_t> some, all;
 };
 
-VisibleBins find_visible_bins(const TransferFunction& transfer, const SceneUnits& units) {
+VisibleBins find_visible_bins(const TransferFunction& transfer, const RangedField& field) {
     std::vector<std::uint8_t> seen(bin_count), unseen(bin_count);
     const auto mark = [&](double begin, double end, bool visible) {
-        if (end < units.scalar_low || begin > units.scalar_high) return;
-        const std::uint16_t first = bin_of(units, std::max(begin, units.scalar_low));
-        const std::uint16_t last = bin_of(units, std::min(end, units.scalar_high));
+        if (end < field.range.low || begin > field.range.high) return;
+        const std::uint16_t first = bin_of(field, std::max(begin, field.range.low));
+        const std::uint16_t last = bin_of(field, std::min(end, field.range.high));
         auto& bins = visible ? seen : unseen;
         std::fill(bins.begin() + first, bins.begin() + last + 1, std::uint8_t{1});
     };
@@ -112,17 +135,33 @@ VisibleBins find_visible_bins(const TransferFunction& transfer, const SceneUnits
     return next;
 }
 
-std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& units,
+std::vector<std::uint8_t> find_visible(const RangedField& field, const TransferFunction& transfer,
                                        const std::vector<PreparedScene::BinRange>& bins) {
-    const VisibleBins next = find_visible_bins(*scene.transfer, units);
+    const VisibleBins next = find_visible_bins(transfer, field);
     std::vector<std::uint8_t> visible(bins.size());
     for_all(bins.size(), [&](std::size_t cell) {
         const auto [low, high] = bins[cell];
         if (low > high || next.some[low] > high) return;
         // A cell has all scalars of the bins between its outermost ones, but only some of those two.
         const bool surely = next.all[low] <= high || next.some[low + 1] < high;
-        const auto s = surely ? std::nullopt : scalars_of(scene, cell);
-        visible[cell] = surely || scene.transfer->visible(s->low, s->high);
+        const auto s = surely ? std::nullopt : scalars_of(field, cell);
+        visible[cell] = surely || transfer.visible(s->low, s->high);
+    });
+    return visible;
+}
+
+// What absorbs over the opacity field, and what shines by itself over the other one; nothing where either is not finite.
+std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& units, const std::vector<PreparedScene::BinRange>& bins,
+                                       const std::vector<PreparedScene::BinRange>& opacity_bins) {
+    if (!scene.opacity_field) return find_visible(main_field(scene, units), *scene.transfer, bins);
+    std::vector<std::uint8_t> visible =
+        find_visible(opacity_field(scene, units), extinction_alone(*scene.transfer), opacity_bins);
+    std::vector<std::uint8_t> shining(visible.size());
+    if (scene.transfer->model() == OpticalModel::emitter)
+        shining = find_visible(main_field(scene, units), color_alone(*scene.transfer), bins);
+    for_all(visible.size(), [&](std::size_t cell) {
+        const bool finite = bins[cell].low <= bins[cell].high && opacity_bins[cell].low <= opacity_bins[cell].high;
+        visible[cell] = finite && (visible[cell] || shining[cell]);
     });
     return visible;
 }
@@ -131,8 +170,9 @@ std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& uni
 
 PreparedScene::PreparedScene(Scene scene)
     : scene_(std::move(scene)), units_(find_units(scene_)), sorter_(*scene_.mesh),
-      bins_(find_bins(scene_, units_)),
-      visible_(find_visible(scene_, units_, bins_)) {}
+      bins_(find_bins(main_field(scene_, units_))),
+      opacity_bins_(scene_.opacity_field ? find_bins(opacity_field(scene_, units_)) : std::vector<BinRange>{}),
+      visible_(find_visible(scene_, units_, bins_, opacity_bins_)) {}
 
 double PreparedScene::mean_chord() {
     if (!mean_chord_) mean_chord_ = find_mean_chord(*scene_.mesh, units_.length);
@@ -141,7 +181,7 @@ double PreparedScene::mean_chord() {
 
 void PreparedScene::set_transfer(std::shared_ptr<const TransferFunction> transfer) {
     scene_.transfer = std::move(transfer);
-    visible_ = find_visible(scene_, units_, bins_);
+    visible_ = find_visible(scene_, units_, bins_, opacity_bins_);
 }
 
 ViewOrder PreparedScene::order(const Camera& camera, ImageSize size, std::optional<OrderMethod> method, OrderReport* report) {

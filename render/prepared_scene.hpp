@@ -22,11 +22,14 @@ struct SceneUnits {
     double length;       // half the diagonal of the mesh's box [mesh units], > 0
     double scalar_low;   // the field's smallest finite value
     double scalar_high;  // the field's largest finite value
+    double opacity_low = 0.0, opacity_high = 0.0;  // likewise of the opacity field, where there is one
 
     // 0 at scalar_low, 1 at scalar_high; 0 for a constant field.
-    double normalized(double s) const {
-        return scalar_high > scalar_low ? (s - scalar_low) / (scalar_high - scalar_low) : 0.0;
-    }
+    double normalized(double s) const { return normalized(s, scalar_low, scalar_high); }
+    double normalized_opacity(double s) const { return normalized(s, opacity_low, opacity_high); }
+
+private:
+    static double normalized(double s, double low, double high) { return high > low ? (s - low) / (high - low) : 0.0; }
 };
 
 class PreparedScene {
@@ -47,7 +50,7 @@ public:
     double mean_chord();
 
     // visible()[cell] is 0 for cells that add nothing to any picture: no emission and no extinction over the range of
-    // their scalars, or a scalar that is not finite.
+    // their scalars, or a scalar of either field that is not finite.
     const std::vector<std::uint8_t>& visible() const { return visible_; }
 
     // Another transfer function over the same mesh and field: only the visibility is found anew, for most cells from bins
@@ -65,7 +68,7 @@ private:
     VisibilitySorter sorter_;
     std::optional<double> mean_chord_;  // once somebody has asked
     std::unique_ptr<const RayIndex> ray_index_;  // once an order was to be judged
-    std::vector<BinRange> bins_;  // #T
+    std::vector<BinRange> bins_, opacity_bins_;  // #T; none without an opacity field
     std::vector<std::uint8_t> visible_;
 };
 

@@ -80,20 +80,31 @@ double RayLight::Walk::next_cut() const {
     return piece_ == last_ ? 1.0 : (exit_scalar() - ends_.front) / (ends_.back - ends_.front);
 }
 
-double RayLight::Walk::advance(double share, OpticalModel model, Stretch& sum) {
+RayLight::Walk::Step RayLight::Walk::advance(double share) {
     const LinearPiece& piece = transfer_->pieces()[piece_];
     const bool leaves = share >= next_cut();
     // A cut of another medium: rounding must not carry this one out of its piece.
     const double end =
         leaves ? exit_scalar() : std::clamp(ends_.front * (1.0 - share) + ends_.back * share, piece.begin, piece.end);
     const bool constant = ends_.front == ends_.back;  // on a breakpoint, the function's own value counts
-    const double tau[2] = {constant ? transfer_->extinction(end) : piece.extinction(scalar_),
-                           constant ? transfer_->extinction(end) : piece.extinction(end)};
-    const glm::dvec3 color[2] = {constant ? transfer_->color(end) : piece.color(scalar_),
-                                 constant ? transfer_->color(end) : piece.color(end)};
+    const Step step{constant ? 1.0 : (end - scalar_) / (ends_.back - ends_.front),
+                    {constant ? transfer_->extinction(end) : piece.extinction(scalar_),
+                     constant ? transfer_->extinction(end) : piece.extinction(end)},
+                    {constant ? transfer_->color(end) : piece.color(scalar_),
+                     constant ? transfer_->color(end) : piece.color(end)}};
+    scalar_ = end;
+    if (leaves) {
+        done_ = piece_ == last_;
+        if (piece_ != last_) piece_ = piece_ < last_ ? piece_ + 1 : piece_ - 1;
+    }
+    return step;
+}
+
+// One more medium on a stretch.
+void RayLight::superpose(const glm::dvec3 (&color)[2], const double (&tau)[2], Stretch& sum) const {
     for (int side : {0, 1})
         sum.extinction[side] += tau[side];
-    if (model == OpticalModel::density) {
+    if (transfer_->model() == OpticalModel::density) {
         sum.emission[0] += color[0] * tau[0];
         sum.emission[1] += 0.5 * (color[0] * tau[1] + color[1] * tau[0]);
         sum.emission[2] += color[1] * tau[1];
@@ -102,35 +113,48 @@ double RayLight::Walk::advance(double share, OpticalModel model, Stretch& sum) {
         sum.emission[1] += 0.5 * (color[0] + color[1]);
         sum.emission[2] += color[1];
     }
-    const double walked = constant ? 1.0 : (end - scalar_) / (ends_.back - ends_.front);
-    scalar_ = end;
-    if (leaves) {
-        done_ = piece_ == last_;
-        if (piece_ != last_) piece_ = piece_ < last_ ? piece_ + 1 : piece_ - 1;
-    }
-    return walked;
 }
 
-void RayLight::add(std::span<const ScalarEnds> media, double length) {
-    assert(length >= 0 && std::isfinite(length));
+void RayLight::add(std::span<const ScalarEnds> media, std::span<const ScalarEnds> opacity, double length) {
+    assert(length >= 0 && std::isfinite(length) && (opacity.empty() || opacity.size() == media.size()));
     if (media.empty() || length == 0 || opaque()) return;
     walks_.clear();
+    opacity_walks_.clear();
     for (const ScalarEnds& ends : media)
         walks_.emplace_back(*transfer_, ends);
+    for (const ScalarEnds& ends : opacity)
+        opacity_walks_.emplace_back(*transfer_, ends);
+    const auto goes_on = [](const Walk& walk) { return !walk.done(); };
     double begin = 0;
-    while (std::any_of(walks_.begin(), walks_.end(), [](const Walk& walk) { return !walk.done(); })) {
+    while (std::ranges::any_of(walks_, goes_on) || std::ranges::any_of(opacity_walks_, goes_on)) {
         double end = 1;
         for (const Walk& walk : walks_)
             end = std::min(end, walk.next_cut());
+        for (const Walk& walk : opacity_walks_)
+            end = std::min(end, walk.next_cut());
         Stretch stretch{};
         double walked = 0;
-        for (Walk& walk : walks_)
-            walked = walk.advance(end, transfer_->model(), stretch);
-        // The scalars tell the share of a single medium with all digits, even between nodes one ulp apart.
-        stretch.length = length * (walks_.size() == 1 ? walked : end - begin);
+        for (std::size_t i = 0; i < walks_.size(); ++i) {
+            const Walk::Step step = walks_[i].advance(end);
+            walked = step.walked;
+            if (opacity_walks_.empty()) {
+                superpose(step.color, step.extinction, stretch);
+            } else {
+                superpose(step.color, opacity_walks_[i].advance(end).extinction, stretch);
+            }
+        }
+        // The scalar tells the share of a single medium with all digits, even between nodes one ulp apart.
+        stretch.length = length * (walks_.size() == 1 && opacity_walks_.empty() ? walked : end - begin);
         integrate(stretch);
         begin = end;
     }
+}
+
+void RayLight::add(const Light& surface) {
+    assert(surface.opacity >= 0 && surface.opacity <= 1);
+    if (opaque()) return;
+    color_ += std::exp(-depth_) * surface.color;
+    depth_ -= std::log1p(-surface.opacity);
 }
 
 void RayLight::integrate(const Stretch& stretch) {

@@ -33,11 +33,17 @@ public:
 
     // The next interval of the ray, farther from the eye than all before: `length` ≥ 0 [mesh units], one pair of finite
     // scalars, |s| ≤ 1e150, for each cell there. No cell: empty space.
-    void add(std::span<const ScalarEnds> media, double length);
+    void add(std::span<const ScalarEnds> media, double length) { add(media, {}, length); }
+    // The same where colour is a function of one scalar and extinction of another: as many `opacity` as `media`, in their order, or
+    // none where both are functions of one.
+    void add(std::span<const ScalarEnds> media, std::span<const ScalarEnds> opacity, double length);
+
+    // A surface without thickness, farther than all before: associated, opacity 0..1.
+    void add(const Light& surface);
 
     // Nothing farther can be seen: the transmittance is 0 in float64.
     bool opaque() const { return depth_ > 746.0; }
-    double depth() const { return depth_; }  // optical depth so far
+    double depth() const { return depth_; }  // optical depth so far; infinite behind an opaque surface
     Light light() const;                     // associated
 
 private:
@@ -57,8 +63,13 @@ private:
         bool done() const { return done_; }
         // Where it leaves its piece, as a share of the interval.
         double next_cut() const;
-        // Adds its light from where it is up to `share` of the interval, and goes there; returns the share walked.
-        double advance(double share, OpticalModel model, Stretch& sum);
+        // Goes from where it is up to `share` of the interval.
+        struct Step {
+            double walked;  // share of the interval
+            double extinction[2];
+            glm::dvec3 color[2];
+        };
+        Step advance(double share);
 
     private:
         double exit_scalar() const;
@@ -70,12 +81,13 @@ private:
         bool done_ = false;
     };
 
+    void superpose(const glm::dvec3 (&color)[2], const double (&extinction)[2], Stretch& sum) const;
     void integrate(const Stretch& stretch);
 
     const TransferFunction* transfer_;
     glm::dvec3 color_{0.0};
     double depth_ = 0.0;
-    std::vector<Walk> walks_;  // of the interval in hand; kept for its memory
+    std::vector<Walk> walks_, opacity_walks_;  // of the interval in hand; kept for their memory
 };
 
 }  // namespace cellproj

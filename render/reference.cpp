@@ -33,43 +33,6 @@ void check_pixel(PixelId pixel, int width, int height) {
 
 glm::dvec2 center(PixelId pixel) { return {pixel.x + 0.5, pixel.y + 0.5}; }
 
-double interpolate(const std::array<double, 4>& values, const std::array<double, 4>& weights) {
-    double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-        sum += values[i] * weights[i];
-    // Where all are equal, or nearly, rounding must not make another value of them.
-    return std::clamp(sum, std::ranges::min(values), std::ranges::max(values));
-}
-
-// A part of the ray with its scalars.
-struct Segment {
-    double enter, leave;
-    ScalarEnds scalars;
-
-    double at(double t) const {
-        if (t <= enter) return scalars.front;
-        if (t >= leave) return scalars.back;
-        const double share = (t - enter) / (leave - enter);
-        return (1.0 - share) * scalars.front + share * scalars.back;
-    }
-};
-
-// By ascending `enter`.
-std::vector<Segment> segments(const Scene& scene, const std::vector<Crossing>& crossings) {
-    std::vector<Segment> result;
-    result.reserve(crossings.size());
-    for (const Crossing& crossing : crossings) {
-        std::array<double, 4> values;
-        for (int corner = 0; corner < 4; ++corner)
-            values[static_cast<std::size_t>(corner)] = scene.field->at(*scene.mesh, crossing.cell, corner);
-        if (!std::ranges::all_of(values, [](double s) { return std::isfinite(s); })) continue;
-        result.push_back(
-            {crossing.enter, crossing.leave, {interpolate(values, crossing.at_enter), interpolate(values, crossing.at_leave)}});
-    }
-    std::sort(result.begin(), result.end(), [](const Segment& a, const Segment& b) { return a.enter < b.enter; });
-    return result;
-}
-
 // Position along a Morton curve: the bits of x and y in turn.
 std::uint64_t morton(PixelId pixel) {
     std::uint64_t code = 0;
@@ -132,31 +95,71 @@ double outside(double value, double low, double high) {
 Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene_(std::move(scene)), index_(std::move(index)) {
     validate(scene_);
     if (!index_) index_ = std::make_shared<RayIndex>(*scene_.mesh);
+    if (!scene_.surfaces) return;
+    rounding_ = rounding_along_ray(bounds(scene_.mesh->points).diagonal());
+    if (scene_.surfaces->shading == Shading::flat) gradients_ = cell_gradients(*scene_.mesh, *scene_.field);
+    if (scene_.surfaces->shading == Shading::smooth) gradients_ = vertex_gradients(*scene_.mesh, *scene_.field);
+}
+
+std::vector<SurfaceHit> Reference::surfaces_along(const ViewRay& ray) const {
+    if (!scene_.surfaces) return {};
+    return surface_hits(scene_.surfaces->isosurfaces, ray_segments(scene_, index_->cells_along(ray)), rounding_);
+}
+
+glm::dvec3 Reference::gradient_at(const SurfaceHit& hit) const {
+    if (!scene_.surfaces || scene_.surfaces->shading == Shading::unlit) return glm::dvec3(0);
+    if (scene_.surfaces->shading == Shading::flat) return gradients_.values[hit.cell];
+    glm::dvec3 sum(0);
+    for (std::size_t corner = 0; corner < 4; ++corner)
+        sum += hit.weights[corner] * gradients_.values[scene_.mesh->tets[hit.cell][corner]];
+    return sum;
+}
+
+// The surface as a layer of the light that it sends back along the ray.
+Light Reference::reflected(const SurfaceHit& hit, const ViewRay& ray) const {
+    const SurfaceScene& surfaces = *scene_.surfaces;
+    const IsoSurface& surface = surfaces.isosurfaces.surfaces()[hit.surface];
+    const glm::dvec3& color = seen_color(surface, hit.rising);
+    if (surfaces.shading == Shading::unlit) return layer(color, surface.opacity);
+    // The front side is that of the lower scalars.
+    return layer(shade(surfaces.lighting, color, -gradient_at(hit), -ray.direction), surface.opacity);
 }
 
 Light Reference::light(const ViewRay& ray) const {
-    const std::vector<Segment> along = segments(scene_, index_->cells_along(ray));
+    const std::vector<RaySegment> along = ray_segments(scene_, index_->cells_along(ray));
+    const std::vector<SurfaceHit> hits =
+        scene_.surfaces ? surface_hits(scene_.surfaces->isosurfaces, along, rounding_) : std::vector<SurfaceHit>{};
     std::vector<double> bounds;
-    bounds.reserve(2 * along.size());
-    for (const Segment& segment : along)
+    bounds.reserve(2 * along.size() + hits.size());
+    for (const RaySegment& segment : along)
         bounds.insert(bounds.end(), {segment.enter, segment.leave});
+    for (const SurfaceHit& hit : hits)
+        bounds.push_back(hit.t);
     std::sort(bounds.begin(), bounds.end());
     bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
 
-    // Between two neighbouring bounds the same segments are there.
+    // Between two neighbouring bounds the same segments are there, and no surface.
     RayLight light(*scene_.transfer);
-    std::vector<Segment> here;
-    std::vector<ScalarEnds> media;
+    std::vector<RaySegment> here;
+    std::vector<ScalarEnds> media, opacity;
     auto next = along.begin();
-    for (std::size_t i = 0; i + 1 < bounds.size() && !light.opaque(); ++i) {
-        const double begin = bounds[i], end = bounds[i + 1];
-        std::erase_if(here, [&](const Segment& segment) { return segment.leave <= begin; });
+    auto hit = hits.begin();
+    for (std::size_t i = 0; i < bounds.size() && !light.opaque(); ++i) {
+        const double begin = bounds[i];
+        for (; hit != hits.end() && hit->t <= begin; ++hit)
+            light.add(reflected(*hit, ray));
+        if (i + 1 == bounds.size()) break;
+        const double end = bounds[i + 1];
+        std::erase_if(here, [&](const RaySegment& segment) { return segment.leave <= begin; });
         while (next != along.end() && next->enter <= begin)
             here.push_back(*next++);
         media.clear();
-        for (const Segment& segment : here)
+        opacity.clear();
+        for (const RaySegment& segment : here) {
             media.push_back({segment.at(begin), segment.at(end)});
-        light.add(media, end - begin);
+            if (scene_.opacity_field) opacity.push_back({segment.opacity_at(begin), segment.opacity_at(end)});
+        }
+        light.add(media, opacity, end - begin);
     }
     return light.light();
 }

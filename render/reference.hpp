@@ -9,6 +9,8 @@
 // - Fields on points are linear in a cell, fields on cells constant. Cells that touch a value that is not finite are left out.
 // - Where cells overlap, their media are superposed: extinction and emission add up (ray_light.hpp). A renderer that draws one
 //   cell after the other gets the same opacity, but the colour of the one it draws last is in front.
+// - Isosurfaces lie where the linear scalar of a cell passes their value (ray_surfaces.hpp): the medium is integrated up to
+//   them, then they are composited, unlit or lit by the cell's or the points' gradients.
 // - Perspective rays begin at the eye, parallel ones at infinity. (The renderers cut at their near plane, a thousandth of the
 //   distance to the camera's center.)
 // - A ray along a face, an edge or through a vertex is decided as one beside it, the same for all cells (ray_index.hpp).
@@ -24,9 +26,11 @@
 
 #include <glm/vec4.hpp>
 
+#include "mesh/gradient.hpp"
 #include "project/camera.hpp"
 #include "render/image.hpp"
 #include "render/ray_index.hpp"
+#include "render/ray_surfaces.hpp"
 #include "render/scene.hpp"
 
 namespace cellproj {
@@ -48,7 +52,7 @@ struct PixelTruth {
 // Keeps the index over a scene's mesh for any number of pictures. Immutable: any number of threads may ask at once.
 class Reference {
 public:
-    // Throws Error (data) when the mesh is refused by `validate`, or the field does not fit it or has no finite value.
+    // Throws Error (data) when the mesh is refused by `validate`, or as `validate` of the scene.
     // `index`: that of the same mesh, when there is one already.
     explicit Reference(Scene scene, std::shared_ptr<const RayIndex> index = nullptr);
 
@@ -57,6 +61,11 @@ public:
 
     // The light along one ray.
     Light light(const ViewRay& ray) const;
+
+    // The isosurfaces that it meets, all of them, also behind opaque ones; and the gradient there that their shading takes
+    // [scalar / mesh unit]: 0 where there is none, or unlit.
+    std::vector<SurfaceHit> surfaces_along(const ViewRay& ray) const;
+    glm::dvec3 gradient_at(const SurfaceHit& hit) const;
 
     // The truth of these pixels, in their order. Rasterizers move points to a grid of 1/256 of a pixel; their picture is one
     // of a mesh moved by at most 1/512. With `slack` > 0 [pixels], low and high also take in the light at the four positions
@@ -75,8 +84,12 @@ public:
     std::vector<PixelId> sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed = 1) const;
 
 private:
+    Light reflected(const SurfaceHit& hit, const ViewRay& ray) const;
+
     Scene scene_;
     std::shared_ptr<const RayIndex> index_;
+    double rounding_ = 0;  // of places along a ray [mesh units]
+    Gradients gradients_;  // of cells (flat) or points (smooth)
 };
 
 // For a single picture of a scene.

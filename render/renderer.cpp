@@ -7,13 +7,21 @@
 
 namespace cellproj {
 
-bool draws(Backend backend, const Quality& quality) {
-    if (backend == Backend::gl_osmesa) return !quality.order_per_pixel;
-    return !light_at_vertices(quality.method) && quality.target == TargetFormat::rgba32f;
+bool draws(Backend backend, const Quality& quality, FieldsRead fields) {
+    const bool one_field = fields == FieldsRead::one;
+    if (backend == Backend::gl_osmesa) return !quality.order_per_pixel && (one_field || takes_opacity_field(quality.method));
+    return one_field && !light_at_vertices(quality.method) && quality.target == TargetFormat::rgba32f;
 }
 
-void require_drawn(Backend backend, const Quality& quality) {
-    if (draws(backend, quality)) return;
+void require_drawn(Backend backend, const Quality& quality, FieldsRead fields) {
+    if (draws(backend, quality, fields)) return;
+    if (fields == FieldsRead::two) {
+        require_takes_opacity_field(quality.method, "--method");
+        if (backend == Backend::cpu) {
+            throw Error({ErrorKind::option, "--opacity-field", "colour and opacity from one field for the CPU backend", "another field",
+                         "use the OpenGL backend (--backend gl)"});
+        }
+    }
     if (backend == Backend::gl_osmesa) {
         throw Error({ErrorKind::option, "--order", "an order of cells for the OpenGL backend", "pixel",
                      "use the CPU backend (--backend cpu)"});

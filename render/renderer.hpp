@@ -35,7 +35,8 @@ class Renderer {
 public:
     virtual ~Renderer() = default;
 
-    // Does now what the first picture of a scene would do besides drawing; later pictures find it done.
+    // Does now what the first picture of a scene would do besides drawing; later pictures find it done. Throws as
+    // `require_drawn`.
     virtual void prepare(const Scene& scene, const Quality& quality = {}) = 0;
 
     // The associated picture, over nothing: the background is added when it is written. Throws Error (option) for an
@@ -54,10 +55,10 @@ struct RendererOptions {
     int threads = 0;                                // of the CPU backend, ≥ 0; 0: all that the process may use
 };
 
-// Whether a backend draws pictures of this quality.
-bool draws(Backend backend, const Quality& quality);
+// Whether a backend draws pictures of this quality, of a scene with or without an opacity field.
+bool draws(Backend backend, const Quality& quality, FieldsRead fields = FieldsRead::one);
 // Throws Error (option), which says what to do instead, when it does not; so do renderers.
-void require_drawn(Backend backend, const Quality& quality);
+void require_drawn(Backend backend, const Quality& quality, FieldsRead fields = FieldsRead::one);
 
 // Throws Error (environment) when the backend is not available here; the message names the package to install.
 std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options = {});

@@ -10,10 +10,12 @@
 
 namespace cellproj {
 
-void validate(const Scene& scene) {
-    assert(scene.mesh && scene.field && scene.transfer);
-    const ScalarField& field = *scene.field;
-    const std::size_t rows = field.location == FieldLocation::points ? scene.mesh->points.size() : scene.mesh->tets.size();
+namespace {
+
+bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
+
+void validate(const TetMesh& mesh, const ScalarField& field) {
+    const std::size_t rows = field.location == FieldLocation::points ? mesh.points.size() : mesh.tets.size();
     if (field.values.size() != rows) {
         throw Error({ErrorKind::data, "field \"" + field.name + "\"", std::to_string(rows) + " values",
                      std::to_string(field.values.size()), "choose a field of this mesh"});
@@ -21,6 +23,28 @@ void validate(const Scene& scene) {
     if (std::none_of(field.values.begin(), field.values.end(), [](double s) { return std::isfinite(s); })) {
         throw Error({ErrorKind::data, "field \"" + field.name + "\"", "finite values", "none", "choose another field"});
     }
+}
+
+}  // namespace
+
+void validate(const Scene& scene) {
+    assert(scene.mesh && scene.field && scene.transfer);
+    const ScalarField& field = *scene.field;
+    validate(*scene.mesh, field);
+    if (scene.opacity_field) validate(*scene.mesh, *scene.opacity_field);
+    if (!has_surfaces(scene)) return;
+    if (field.location == FieldLocation::cells) {
+        throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",
+                     "one on cells, constant in each", "carry it to the points first"});
+    }
+    validate(scene.surfaces->lighting, "lights");
+}
+
+void refuse_surfaces(const Scene& scene, const std::string& backend) {
+    if (!has_surfaces(scene)) return;
+    throw Error({ErrorKind::option, backend, "a scene without isosurfaces",
+                 std::to_string(scene.surfaces->isosurfaces.surfaces().size()) + " of them",
+                 "leave them out: this renderer does not draw them"});
 }
 
 }  // namespace cellproj

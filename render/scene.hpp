@@ -4,21 +4,37 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "classify/transfer_function.hpp"
 #include "mesh/scalar_field.hpp"
 #include "mesh/tet_mesh.hpp"
+#include "render/surface_scene.hpp"
 
 namespace cellproj {
 
-// None of the three may be null; the field must fit the mesh. Do not change them while a renderer may use them.
+// None of the first three may be null; fields must fit the mesh. Do not change them while a renderer may use them.
+// Isosurfaces lie in the medium of the transfer function; without a medium, its extinction (and emission) is 0.
 struct Scene {
     std::shared_ptr<const TetMesh> mesh;
     std::shared_ptr<const ScalarField> field;
     std::shared_ptr<const TransferFunction> transfer;
+    std::shared_ptr<const SurfaceScene> surfaces = nullptr;  // null: none
+    // Where there is one, extinction is a function of this field, and only colour one of `field`: q = κ(field)·τ(opacity_field) in the
+    // density model, which lifts the restriction of RKE00 Eq. 1 that κ and ρ come from one scalar. Cells where either field is not
+    // finite are left out. Isosurfaces are those of `field`.
+    std::shared_ptr<const ScalarField> opacity_field = nullptr;
 };
 
-// Throws Error (data) when the field does not fit the mesh or has no finite value.
+// What colour and extinction are functions of.
+enum class FieldsRead { one, two };
+inline FieldsRead fields_read(const Scene& scene) { return scene.opacity_field ? FieldsRead::two : FieldsRead::one; }
+
+// Throws Error (data) when a field does not fit the mesh or has no finite value, Error (option) for isosurfaces of a field on
+// cells, which has none, and for lights out of range.
 void validate(const Scene& scene);
+
+// For renderers that draw no isosurfaces: throws Error (option), naming the backend, when the scene has some.
+void refuse_surfaces(const Scene& scene, const std::string& backend);
 
 }  // namespace cellproj

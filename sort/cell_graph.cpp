@@ -10,6 +10,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -237,18 +238,38 @@ glm::dvec3 CellGraph::scaled(const Eye& eye) const {
     return eye.xyz / std::max({std::abs(eye.xyz.x), std::abs(eye.xyz.y), std::abs(eye.xyz.z)});
 }
 
-void CellGraph::find_relations(const Eye& eye, std::span<Relations> relations) const {
-    assert(relations.size() == size() + 1);
+CellGraph::View CellGraph::view_from(const Eye& eye) const {
     const glm::dvec3 e = scaled(eye);
     const double reach = std::max({std::abs(e.x), std::abs(e.y), std::abs(e.z)});
     const double r = eye.at_infinity ? 1.0 : reach + 1.0;
-    const View view{eye, glm::vec3(e), eye.at_infinity, static_cast<float>(r * 0x1p-24 * 1.001)};
+    return {eye, glm::vec3(e), eye.at_infinity, static_cast<float>(r * 0x1p-24 * 1.001)};
+}
+
+void CellGraph::find_relations(const Eye& eye, std::span<Relations> relations) const {
+    assert(relations.size() == size() + 1);
+    const View view = view_from(eye);
     oneapi::tbb::parallel_for(Range(0, size(), cells_per_task), [&](const Range& range) {
         for (std::size_t begin = range.begin(); begin < range.end(); begin += cells_per_block) {
-            relate(view, begin, std::min(begin + cells_per_block, range.end()), relations);
+            relate(view, std::min(cells_per_block, range.end() - begin), [&](std::size_t k) { return begin + k; },
+                   [&](std::size_t k, unsigned positive, unsigned negative) {
+                       relations[begin + k] = relations_at(view, begin + k, positive, negative);
+                   });
         }
     });
     relations[size()] = 0;
+}
+
+void CellGraph::find_relations(const Eye& eye, std::span<const CellId> places, std::span<Relations> relations,
+                               std::span<float> reach) const {
+    assert(relations.size() == places.size() && reach.size() == places.size());
+    const View view = view_from(eye);
+    for (std::size_t begin = 0; begin < places.size(); begin += cells_per_block) {
+        relate(view, std::min(cells_per_block, places.size() - begin), [&](std::size_t k) { return places[begin + k]; },
+               [&](std::size_t k, unsigned positive, unsigned negative, float cell_reach) {
+                   relations[begin + k] = relations_at(view, places[begin + k], positive, negative);
+                   reach[begin + k] = cell_reach;
+               });
+    }
 }
 
 // With edges u, v, w from the first corner and r from there to the eye (or its direction), the sides of the faces are
@@ -257,14 +278,24 @@ void CellGraph::find_relations(const Eye& eye, std::span<Relations> relations) c
 // most R per coordinate, to 2hR. A determinant moves by no more than 6(2h(1 + L)·L·R + 2hR·L²) and terms of h², its evaluation
 // adds 30·h·L²·R: together less than hR(54 L² + 12 L + 60 h). Face 0 sums four of them, [u v w] being within twice that bound as
 // L ≤ 2R, and rounds three times: less than 7 times the bound.
-void CellGraph::relate(const View& view, std::size_t begin, std::size_t end, std::span<Relations> relations) const {
+// Reach: a determinant is linear in the eye, with gradient u × v, so its sign holds while the eye moves by less than its size, less the
+// bound, over |u × v|. A component of that is good to 4h(1 + L)·L + 4hL² and terms of h², the length to √3 times as much: less
+// than h(7 L + 14 L²), here doubled for the rounding of the length itself. Face 0's gradient is the sum of the three. The last factor
+// is for the rounding of the quotient.
+//
+// `take` gets the number of a cell and, a bit per face, what float32 proves; where it wants the reach, that too.
+template <class PlaceOf, class Take>
+void CellGraph::relate(const View& view, std::size_t count, PlaceOf place_of, Take take) const {
+    constexpr bool with_reach = std::is_invocable_v<Take, std::size_t, unsigned, unsigned, float>;
     constexpr std::size_t n = cells_per_block;
     float ux[n], uy[n], uz[n], vx[n], vy[n], vz[n], wx[n], wy[n], wz[n], rx[n], ry[n], rz[n];
     std::uint8_t positive[n], negative[n];
-    const std::size_t count = end - begin;
+    [[maybe_unused]] float reach[n];
+    [[maybe_unused]] constexpr std::size_t ahead = 16;  // cells, about the time that memory takes to answer
     const float origin = view.at_infinity ? 0.0F : 1.0F;
     for (std::size_t k = 0; k < count; ++k) {
-        const auto& corner = corners_[begin + k];
+        const auto& corner = corners_[place_of(k)];
+        if constexpr (with_reach) __builtin_prefetch(&corners_[place_of(std::min(k + ahead, count - 1))]);
         const Point a = points_[corner[0]], b = points_[corner[1]], c = points_[corner[2]], d = points_[corner[3]];
         ux[k] = b.x - a.x, uy[k] = b.y - a.y, uz[k] = b.z - a.z;
         vx[k] = c.x - a.x, vy[k] = c.y - a.y, vz[k] = c.z - a.z;
@@ -291,8 +322,25 @@ void CellGraph::relate(const View& view, std::size_t begin, std::size_t end, std
         };
         positive[k] = bits(bcd > 7.0F * bound, -vwr > bound, uwr > bound, -uvr > bound);
         negative[k] = bits(-bcd > 7.0F * bound, vwr > bound, -uwr > bound, uvr > bound);
+        if constexpr (with_reach) {
+            const float slack = 0x1p-24F * (14.0F + 28.0F * longest) * longest;
+            const auto length = [](float x, float y, float z) { return std::sqrt(x * x + y * y + z * z); };
+            const auto smaller = [](float x, float y) { return x < y ? x : y; };
+            const float reach0 = (std::abs(bcd) - 7.0F * bound) /
+                                 (length((vwx - uwx) + uvx, (vwy - uwy) + uvy, (vwz - uwz) + uvz) + 4.0F * slack);
+            const float reach1 = (std::abs(vwr) - bound) / (length(vwx, vwy, vwz) + slack);
+            const float reach2 = (std::abs(uwr) - bound) / (length(uwx, uwy, uwz) + slack);
+            const float reach3 = (std::abs(uvr) - bound) / (length(uvx, uvy, uvz) + slack);
+            reach[k] = larger(smaller(smaller(reach0, reach1), smaller(reach2, reach3)) * (1.0F - 0x1p-20F), 0.0F);
+        }
     }
-    for (std::size_t k = 0; k < count; ++k) relations[begin + k] = relations_at(view, begin + k, positive[k], negative[k]);
+    for (std::size_t k = 0; k < count; ++k) {
+        if constexpr (with_reach) {
+            take(k, positive[k], negative[k], reach[k]);
+        } else {
+            take(k, positive[k], negative[k]);
+        }
+    }
 }
 
 // Faces that float32 could not tell are asked exactly.
@@ -306,7 +354,8 @@ CellGraph::Relations CellGraph::relations_at(const View& view, std::size_t place
         if (side > 0) in_front_of |= 1U << face;
         if (side < 0) hidden |= 1U << face;
     }
-    return static_cast<Relations>((in_front_of & inner) | static_cast<unsigned>(std::popcount(hidden & inner)) << 4);
+    constexpr std::uint64_t ones = 0x4332322132212110ULL;  // in 15, 14, …, 0: baseline x86-64 has no instruction for it
+    return static_cast<Relations>((in_front_of & inner) | static_cast<unsigned>(ones >> (4 * (hidden & inner)) & 0xfU) << 4);
 }
 
 }  // namespace cellproj

@@ -32,11 +32,15 @@ public:
     // The relations of all places, exact: they are those of the float64 mesh and eye. `relations` has #T + 1 elements; the last one
     // is set to 0. Runs on all cores.
     void find_relations(const Eye& eye, std::span<Relations> relations) const;
+    // Those of some places, on this core, and for each how far the eye, as `scaled` gives it, may move in any direction before one of
+    // them can change: ≥ 0, never too much. Both results are as long as `places`.
+    void find_relations(const Eye& eye, std::span<const CellId> places, std::span<Relations> relations, std::span<float> reach) const;
 
     const TetMesh& mesh() const { return mesh_; }
     std::size_t size() const { return neighbours_.size(); }
     CellId nobody() const { return static_cast<CellId>(size()); }
     CellId cell(CellId place) const { return cells_[place]; }            // as the caller numbers it
+    const std::vector<CellId>& cells() const { return cells_; }          // by place
     bool keeps_order() const { return keeps_order_; }                    // of the caller: places are his numbers
     const std::array<CellId, 4>& neighbours(CellId place) const { return neighbours_[place]; }  // places; nobody() where there is none
     const std::vector<std::array<CellId, 4>>& neighbours() const { return neighbours_; }
@@ -74,7 +78,9 @@ private:
     void number_points();
     void find_sides();
     Relations relations_at(const View& view, std::size_t place, unsigned positive, unsigned negative) const;
-    void relate(const View& view, std::size_t begin, std::size_t end, std::span<Relations> relations) const;
+    View view_from(const Eye& eye) const;
+    template <class PlaceOf, class Take>
+    void relate(const View& view, std::size_t count, PlaceOf place_of, Take take) const;
 
     const TetMesh& mesh_;
     glm::dvec3 center_{0.0};

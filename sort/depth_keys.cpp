@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -47,7 +48,8 @@ std::size_t find_places(std::vector<Counts>& counts) {
 
 }  // namespace
 
-std::span<std::uint32_t> KeySort::sort() {
+std::span<std::uint32_t> KeySort::sort(std::span<const std::uint32_t> names) {
+    assert(names.empty() || names.size() == keys_.size());
     std::vector<Counts> counts(parts);
     for_each_part(keys_.size(), [&](std::size_t part, std::size_t begin, std::size_t end) {
         counts[part].fill(0);
@@ -61,7 +63,7 @@ std::span<std::uint32_t> KeySort::sort() {
     for_each_part(keys_.size(), [&](std::size_t part, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (keys_[i] == no_key) continue;
-            entries_[counts[part][keys_[i] % digits]++] = {keys_[i] / digits, static_cast<std::uint32_t>(i)};
+            entries_[counts[part][keys_[i] % digits]++] = {keys_[i] / digits, names.empty() ? static_cast<std::uint32_t>(i) : names[i]};
         }
     });
     for_each_part(count, [&](std::size_t part, std::size_t begin, std::size_t end) {

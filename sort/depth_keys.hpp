@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sort/cell_graph.hpp"
@@ -16,7 +17,7 @@ inline constexpr int key_bits = 22;
 inline constexpr std::uint32_t largest_key = (1U << key_bits) - 1;
 inline constexpr std::uint32_t no_key = 0xffffffffU;  // leave the element out
 
-// Sorts by key and keeps its memory from view to view: 16 bytes per element.
+// Sorts by key and keeps its memory from view to view until it is released: 16 bytes per element.
 class KeySort {
 public:
     // Where the caller puts the keys: one per element.
@@ -25,9 +26,14 @@ public:
         return keys_;
     }
     // The numbers of the elements whose key is not `no_key`, by ascending key; equal ones by number. The same for any number of threads.
-    std::span<std::uint32_t> sort();
+    // `names`: what to write instead of the numbers, one per element.
+    std::span<std::uint32_t> sort(std::span<const std::uint32_t> names = {});
     // The last result again.
     std::span<std::uint32_t> sorted() { return sorted_; }
+    // The keys and the last result, for good.
+    std::vector<std::uint32_t> take_keys() { return std::move(keys_); }
+    std::vector<std::uint32_t> take_sorted() { return std::move(sorted_); }
+    void release() { *this = {}; }
 
 private:
     struct Entry {

@@ -16,8 +16,8 @@ namespace cellproj {
 
 // Between places. Marks the report as not exact where cells are seen to overlap.
 std::vector<OrderArc> ExactOrder::arcs_across(const CellGraph& graph, const Eye& eye, const PixelGrid* pixels, OrderReport& report) {
-    if (!boundary_) {
-        boundary_ = order_boundary(graph.mesh(), graph.adjacency());
+    if (!boundary_) boundary_ = order_boundary(graph.mesh(), graph.adjacency());
+    if (places_.empty()) {
         places_.resize(graph.size());
         for (CellId place = 0; place < graph.size(); ++place)
             places_[graph.cell(place)] = place;
@@ -34,6 +34,12 @@ std::vector<OrderArc> ExactOrder::arcs_across(const CellGraph& graph, const Eye&
     for (OrderArc& arc : arcs)
         arc = {places_[arc.behind], places_[arc.front]};
     return arcs;
+}
+
+void ExactOrder::release_order() {
+    std::vector<CellId>().swap(places_);  // frees; `= {}` would not
+    std::vector<std::uint32_t>().swap(items_);
+    std::vector<CellPiece>().swap(pieces_);
 }
 
 ViewOrder ExactOrder::order(const CellGraph& graph, TopologicalSort& topological, const Eye& eye, const PixelGrid* pixels,

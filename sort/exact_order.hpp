@@ -26,12 +26,14 @@ public:
     // The order is said to be exact when all relations hold and no cells were seen to overlap: no faces with both cells on one
     // side, and with sxmpvo no ray that enters a cell before it has left the last. The spans stay valid until the next call.
     ViewOrder order(const CellGraph& graph, TopologicalSort& topological, const Eye& eye, const PixelGrid* pixels, OrderReport& report);
+    // The memory of the last order, but not the boundary.
+    void release_order();
 
 private:
     std::vector<OrderArc> arcs_across(const CellGraph& graph, const Eye& eye, const PixelGrid* pixels, OrderReport& report);
 
     std::optional<std::vector<BoundaryFace>> boundary_;  // when first asked for
-    std::vector<CellId> places_;                         // #T: the place of a cell, likewise
+    std::vector<CellId> places_;                         // #T: the place of a cell, when asked for
     std::vector<std::uint32_t> items_;
     std::vector<CellPiece> pieces_;
 };

@@ -143,51 +143,6 @@ std::span<const CellId> TopologicalSort::run(const CellGraph& graph, const Eye& 
     return {order, done};
 }
 
-std::span<const CellId> TopologicalSort::run_again(const CellGraph& graph, const Eye& eye) {
-    constexpr unsigned waiting = 0x80, hidden_left = 0x70;  // parts of a state: its turn was missed; cells it still hides
-    constexpr std::size_t ahead = 12;                       // cells, about the time that memory takes to answer
-    const std::size_t count = graph.size();
-    assert(can_run_again(graph));
-    last_.resize(count + 1);
-    last_.swap(order_);
-    graph.find_relations(eye, state_);
-    state_[count] = out;
-
-    const std::array<CellId, 4>* const neighbours = graph.neighbours().data();
-    const CellId* const last = last_.data();
-    Relations* const state = state_.data();
-    CellId* const order = order_.data();
-    CellId* const bottom = order + count;
-    std::size_t done = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        __builtin_prefetch(neighbours + last[std::min(i + ahead, count - 1)]);
-        const unsigned own = state[last[i]];
-        if ((own & hidden_left) != 0) {  // also when it is in the order already
-            state[last[i]] = static_cast<Relations>(own | waiting);
-            continue;
-        }
-        CellId* top = bottom;
-        *top-- = last[i];
-        while (top != bottom) {
-            const CellId cell = *++top;
-            const unsigned relations = state[cell];
-            state[cell] = out;
-            order[done++] = cell;
-            const std::array<CellId, 4> beside = neighbours[cell];
-            for (unsigned face = 0; face < 4; ++face) {
-                const CellId neighbour = beside[face];
-                const unsigned hidden = relations >> face & 1U;
-                const unsigned left = state[neighbour] - (hidden << 4);
-                state[neighbour] = static_cast<Relations>(left);
-                *top = neighbour;
-                top -= static_cast<std::ptrdiff_t>(hidden & static_cast<unsigned>((left & (waiting | hidden_left)) == waiting));
-            }
-        }
-    }
-    done_ = done;
-    return {order, done};
-}
-
 std::vector<CellId> TopologicalSort::stalled() const {
     std::vector<CellId> left;
     for (std::size_t place = 0; place + 1 < state_.size(); ++place) {

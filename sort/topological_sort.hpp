@@ -14,29 +14,24 @@
 
 namespace cellproj {
 
-// Keeps its memory from view to view: 5 bytes per cell, 4 more after `run_again`, 6 more by depth.
+// Keeps its memory from view to view until it is released: 5 bytes per cell, 6 more by depth.
 class TopologicalSort {
 public:
     // Finds the relations of a view and sorts: places of cells, back to front, the last one freed first. `arcs`, between places, are
     // relations that the graph does not know; they need not be sorted. Fewer than #T where cycles stand in the way.
     std::span<const CellId> run(const CellGraph& graph, const Eye& eye, std::span<const OrderArc> arcs = {});
-    // The same without arcs for a view near the last one, whose order this starts from: cells come as they came then, but for those that
-    // would be too early, which wait for what they hide. Right from anywhere, fastest from nearby.
-    std::span<const CellId> run_again(const CellGraph& graph, const Eye& eye);
-    // Whether there is a whole order to start from.
-    bool can_run_again(const CellGraph& graph) const { return graph.size() > 0 && done_ == graph.size(); }
     // The same without arcs, the farthest centroid of the free cells first. Where no cell is free, the farthest one left is taken
     // against its relations and counted in `unordered`.
     std::span<const CellId> run_by_depth(const CellGraph& graph, const Eye& eye, std::size_t& unordered);
 
     // What is left when `run` returns fewer than all: the places that are not in the order, ascending.
     std::vector<CellId> stalled() const;
+    void release() { *this = {}; }
 
 private:
     struct ArcHeads;
 
     std::vector<CellGraph::Relations> state_;  // #T + 1: relations, the number of hidden ones counted down; `out` when in the order
-    std::vector<CellId> last_;                 // #T: the order before
     std::vector<CellId> order_;                // #T + 1: the order grows from the front, a stack of free cells from the end
     std::size_t done_ = 0;
     std::vector<std::uint16_t> depth_;         // #T: larger is farther

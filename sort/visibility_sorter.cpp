@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include "sort/cell_graph.hpp"
+#include "sort/coherent_order.hpp"
 #include "sort/depth_keys.hpp"
 #include "sort/exact_order.hpp"
 #include "sort/mesh_facts.hpp"
@@ -63,22 +64,28 @@ struct VisibilitySorter::State {
     KeySort key_sort;
     std::optional<bool> delaunay;   // once it was asked for
     std::optional<PowerKeys> powers;  // likewise
-    std::optional<Eye> last_eye;      // of the order that `topological` holds, if it is whole
     ExactOrder exact;
     std::vector<std::uint32_t> items;
+    std::optional<Eye> last_eye;  // of the last proven order by relations, in convex meshes
+    CoherentOrder coherent;
+    bool coherent_fails = false;  // tried since the last view from elsewhere
 
     bool is_delaunay();
+    void make_room_for(OrderMethod method);
+    void free_items() { std::vector<std::uint32_t>().swap(items); }  // `items = {}` would not
     std::span<const CellId> order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible);
     std::span<const CellId> order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible, OrderReport& report);
     std::span<const CellId> order_by_relations(const Eye& eye, OrderReport& report);
     std::span<const CellId> order_of_convex(const Eye& eye);
+    bool order_coherently(const Eye& eye);
     bool close_to_last(const Eye& eye) const;
+    ViewOrder only_visible(const ViewOrder& order, std::span<const std::uint8_t> visible);
     ViewOrder order_exactly(const Eye& eye, const PixelGrid* pixels, OrderReport& report);
-    ViewOrder in_callers_numbers(std::span<const CellId> places);
+    std::span<const CellId> in_callers_numbers(std::span<const CellId> places);
 };
 
 VisibilitySorter::VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency)
-    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .last_eye = {}, .exact = {}, .items = {}})) {
+    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .exact = {}, .items = {}, .last_eye = {}, .coherent = {}, .coherent_fails = false})) {
     state_->convex = fills_convex_body(state_->graph);
 }
 
@@ -96,23 +103,54 @@ ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::opti
     OrderReport found;
     found.method = method.value_or(state_->convex ? OrderMethod::mpvo : OrderMethod::sxmpvo);
     if (found.method == OrderMethod::sxmpvo && !pixels) found.method = OrderMethod::bsp;
+    state_->make_room_for(found.method);
+    if (found.method != OrderMethod::power) state_->powers.reset();  // stay where they only find that mpvo must take over
     if (found.method == OrderMethod::bsp || found.method == OrderMethod::sxmpvo) {
         const ViewOrder order = state_->order_exactly(eye, pixels, found);
         if (report) *report = found;
-        return order;
+        return state_->only_visible(order, visible);
     }
-    const auto places = found.method == OrderMethod::centroid ? state_->order_by_centroids(eye, visible)
-                        : found.method == OrderMethod::power  ? state_->order_by_powers(eye, visible, found)
-                                                              : state_->order_by_relations(eye, found);
+    const auto cells = found.method == OrderMethod::centroid ? state_->order_by_centroids(eye, visible)
+                       : found.method == OrderMethod::power  ? state_->order_by_powers(eye, visible, found)
+                                                             : state_->order_by_relations(eye, found);
     // A convex body with visibility cycles: cut them.
-    const bool has_cycles = found.method == OrderMethod::mpvo && state_->convex && places.size() < state_->graph.size();
-    const ViewOrder order = has_cycles ? state_->order_exactly(eye, nullptr, found) : state_->in_callers_numbers(places);
+    const bool has_cycles = found.method == OrderMethod::mpvo && state_->convex && cells.size() < state_->graph.size();
+    const ViewOrder order = has_cycles ? state_->order_exactly(eye, nullptr, found) : ViewOrder{cells, {}};
     if (report) *report = found;
-    return order;
+    const bool by_keys = found.method == OrderMethod::centroid || found.method == OrderMethod::power;  // which leave out what is not visible
+    return by_keys ? order : state_->only_visible(order, visible);
+}
+
+// Each method has its memory to itself: what others keep for their next view goes.
+void VisibilitySorter::State::make_room_for(OrderMethod method) {
+    const bool by_keys = method == OrderMethod::centroid || method == OrderMethod::power;
+    if (by_keys) {
+        topological.release();
+        coherent.release();
+        last_eye.reset();
+    } else {
+        key_sort.release();
+    }
+    const bool exactly = method == OrderMethod::bsp || method == OrderMethod::sxmpvo;
+    if (!exactly) exact.release_order();
+    if (method == OrderMethod::centroid) free_items();
+}
+
+ViewOrder VisibilitySorter::State::only_visible(const ViewOrder& order, std::span<const std::uint8_t> visible) {
+    if (std::find(visible.begin(), visible.end(), std::uint8_t{0}) == visible.end()) return order;
+    const std::size_t cells = graph.size();
+    std::size_t count = 0;
+    if (items.size() < order.items.size()) items.resize(order.items.size());  // else `order` may stand in it, and ends not later
+    for (const std::uint32_t item : order.items) {
+        items[count] = item;
+        count += visible[item < cells ? item : order.pieces[item - cells].cell] != 0 ? 1 : 0;
+    }
+    return {std::span(items).first(count), order.pieces};
 }
 
 ViewOrder VisibilitySorter::State::order_exactly(const Eye& eye, const PixelGrid* pixels, OrderReport& report) {
     last_eye.reset();
+    coherent.release();
     return exact.order(graph, topological, eye, pixels, report);
 }
 
@@ -123,7 +161,7 @@ bool VisibilitySorter::State::is_delaunay() {
 
 std::span<const CellId> VisibilitySorter::State::order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible) {
     find_centroid_keys(graph, eye, visible, key_sort.keys(graph.size()));
-    return key_sort.sort();
+    return graph.keeps_order() ? key_sort.sort() : key_sort.sort(graph.cells());
 }
 
 std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible,
@@ -131,49 +169,66 @@ std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye,
     if (!powers) powers.emplace(graph);
     powers->find(graph, eye, visible, key_sort.keys(graph.size()));
     auto places = key_sort.sort();
-    if (!is_delaunay()) return places;
+    if (!is_delaunay()) return in_callers_numbers(places);
     report.exact = powers->settle(graph, eye, places);
-    if (report.exact) return places;
-    if (visible.empty()) return order_by_relations(eye, report);
+    if (report.exact) return in_callers_numbers(places);
+    if (visible.empty()) {
+        make_room_for(OrderMethod::mpvo);
+        return order_by_relations(eye, report);
+    }
     // A relation in doubt leads through a cell that was left out: with all cells.
     const auto all = order_by_powers(eye, {}, report);
     if (report.method != OrderMethod::power) return all;
     places = key_sort.sorted();
     const auto last = std::remove_if(places.begin(), places.end(), [&](CellId place) { return visible[graph.cell(place)] == 0; });
-    return all.first(static_cast<std::size_t>(last - places.begin()));
+    return in_callers_numbers(places.first(static_cast<std::size_t>(last - places.begin())));
 }
 
 // In a mesh that fills a convex body any topological order will do; fewer than all when there are cycles. Elsewhere depth has to help.
 std::span<const CellId> VisibilitySorter::State::order_by_relations(const Eye& eye, OrderReport& report) {
     report.method = OrderMethod::mpvo;
     if (convex) {
-        const auto places = order_of_convex(eye);
-        report.exact = places.size() == graph.size();
+        const auto cells = order_of_convex(eye);
+        report.exact = cells.size() == graph.size();
         last_eye = report.exact ? std::optional(eye) : std::nullopt;
-        return places;
+        return cells;
     }
-    last_eye.reset();
-    return topological.run_by_depth(graph, eye, report.unordered);
+    return in_callers_numbers(topological.run_by_depth(graph, eye, report.unordered));
 }
 
 std::span<const CellId> VisibilitySorter::State::order_of_convex(const Eye& eye) {
-    return last_eye && topological.can_run_again(graph) && close_to_last(eye) ? topological.run_again(graph, eye) : topological.run(graph, eye);
+    if (order_coherently(eye)) return coherent.cells();
+    coherent.release();
+    return in_callers_numbers(topological.run(graph, eye));
 }
 
-// Within a few degrees around the mesh: beyond 10 the last order is no help (sort/README.md).
+// One view alone is ordered faster without what the next one would start from: it begins with the second of two that are close.
+bool VisibilitySorter::State::order_coherently(const Eye& eye) {
+    const bool close = last_eye && close_to_last(eye);
+    if (!close) coherent_fails = false;
+    if (!close || coherent_fails) return false;
+    if (coherent.empty()) {
+        topological.release();
+        free_items();
+    }
+    coherent_fails = !(coherent.empty() ? coherent.start(graph, eye) : coherent.follow(graph, eye));
+    return !coherent_fails;
+}
+
+// Within a few degrees around the mesh: beyond, more changes than stays.
 bool VisibilitySorter::State::close_to_last(const Eye& eye) const {
     if (eye.at_infinity != last_eye->at_infinity) return false;
     const glm::dvec3 now = graph.scaled(eye), then = graph.scaled(*last_eye);
     return glm::distance(now, then) < 0.1 * std::max(1.0, glm::length(now));
 }
 
-ViewOrder VisibilitySorter::State::in_callers_numbers(std::span<const CellId> places) {
-    if (graph.keeps_order()) return {places, {}};
+std::span<const CellId> VisibilitySorter::State::in_callers_numbers(std::span<const CellId> places) {
+    if (graph.keeps_order()) return places;
     items.resize(places.size());
     oneapi::tbb::parallel_for(Range(0, places.size(), cells_per_task), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) items[i] = graph.cell(places[i]);
     });
-    return {items, {}};
+    return items;
 }
 
 std::size_t VisibilitySorter::count_violations(const ViewOrder& order, const Eye& eye) const {

@@ -2,7 +2,7 @@
 //
 // The order of cells for an eye: one sorter per mesh, one call per view. sort/README.md says what each method is worth.
 //
-// Contract. Every cell comes once, farthest first (by a key sort, only the visible ones). The report tells the method that was used and
+// Contract. Every visible cell comes once, farthest first. The report tells the method that was used and
 // whether the order is proven for this mesh and eye:
 // - mpvo (Williams, "Visibility Ordering Meshed Polyhedra", ACM TOG 11(2), 1992, the sorter behind RKE00 §2): of two cells with a common
 //   face, the one on the eye's side is in front; any topological order of these relations is an order; cells in cycles are cut. Proven for
@@ -39,7 +39,7 @@ public:
     VisibilitySorter& operator=(VisibilitySorter&&) noexcept;
 
     // Cells from back to front. The spans stay valid until the next call or the end of the sorter. `method`: nothing for one that
-    // is exact for this mesh. `pixels`: what sxmpvo needs; without it is bsp. `visible` (#T or empty): cells with 0 are not drawn; they may be left out.
+    // is exact for this mesh. `pixels`: what sxmpvo needs; without it is bsp. `visible` (#T or empty): cells with 0 are left out.
     ViewOrder order(const Eye& eye, OrderReport* report = nullptr, std::optional<OrderMethod> method = {},
                     const PixelGrid* pixels = nullptr, std::span<const std::uint8_t> visible = {});
 

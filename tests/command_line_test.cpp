@@ -130,6 +130,24 @@ TEST_F(CommandLine, TheOrderIsChosenProvenAndDoubtedAloud) {
     EXPECT_EQ(run("render cube.vtk -o cube.png --order best").code, 2);
 }
 
+TEST_F(CommandLine, OpacityFromAnotherField) {
+    ASSERT_EQ(run("render cube.vtk -o p.png --size 20x20 --field p").code, 0);
+    const Outcome outcome = run("render cube.vtk -o two.png --size 20x20 --field p --opacity-field U");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    const auto bytes = [&](const char* name) {
+        std::ifstream stream(path(name), std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    EXPECT_NE(bytes("two.png").substr(200), bytes("p.png").substr(200));
+    EXPECT_NE(bytes("two.png").find("cellproj opacity field"), std::string::npos);
+    EXPECT_EQ(run("render cube.vtk -o two.png --size 20x20 --field p --opacity-field rank --max-error .01").code, 0);
+    expect_refused("render cube.vtk -o x.png --opacity-field q", {"\"q\"", "p"});
+    expect_refused("render cube.vtk -o x.png --opacity-field U --method preint3d:32", {"--method", "preint3d:32", "integral"});
+    expect_refused("render cube.vtk -o x.png --opacity-field U --backend cpu", {"--opacity-field", "--backend gl"});
+    EXPECT_EQ(run("trade cube.vtk --size 20x20 --rounds 1 --opacity-field U").code, 0);
+    expect_refused("trade cube.vtk --opacity-field U --method stein:vertices", {"--method"});
+}
+
 TEST_F(CommandLine, MethodAndTargetAreChosenAndTold) {
     const Outcome outcome =
         run("render cube.vtk -o cube.png --size 20x20 --method shirley-tuchman --target rgba16f --stats stats.json");

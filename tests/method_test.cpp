@@ -67,6 +67,22 @@ TEST(SceneUnits, KeepTheLightOfEverySegment) {
     }
 }
 
+// What is transparent outside its nodes is cut off at them, not faded out, and holds at them: fields of whole numbers hit them.
+TEST(SceneUnits, TransparencyBeginsBehindTheNodes) {
+    const TransferFunction band(OpticalModel::density, {{-3, {1, 0, 0}}, {9, {0, 1, 0}}}, {{1, 2}, {2, 4}}, Outside::transparent);
+    const TransferFunction spike(OpticalModel::density, band.color_nodes(), {{2, 3}}, Outside::transparent);
+    for (const TransferFunction& transfer : {band, spike}) {
+        for (const auto& [low, high] : std::vector<std::pair<double, double>>{{0, 4}, {1, 2}, {2, 4}, {0, 2}, {0, 1}, {3, 4}}) {
+            const TransferFunction scene = in_scene_units(transfer, low, high, 1);
+            for (const double s : {0.0, 0.5, 0.999, 1.0, 1.5, 2.0, 2.001, 2.5, 3.0, 3.999, 4.0}) {
+                if (s < low || s > high) continue;
+                EXPECT_NEAR(scene.extinction((s - low) / (high - low)), transfer.extinction(s), 1e-12)
+                    << s << " of " << low << ".." << high;
+            }
+        }
+    }
+}
+
 TEST(SceneUnits, AnEmptyRangeIsOneValue) {
     const TransferFunction transfer(OpticalModel::density, {{0, {1, 0, 0}}, {1, {0, 1, 0}}}, {{0, 0}, {1, 4}});
     const TransferFunction scene = in_scene_units(transfer, 0.25, 0.25, 2);

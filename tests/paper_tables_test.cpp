@@ -226,7 +226,7 @@ TEST(RoettgerKrausErtl, TheWorkDoesNotDependOnTheTransferFunction) {
 
     gl::OsmesaContext context(RendererOptions().osmesa_library);
     context.make_current();
-    const auto a = gl::make_segment_shader(method, plain, 2, 0.1), b = gl::make_segment_shader(method, jagged, 2, 0.1);
+    const auto a = gl::make_segment_shader(method, plain, FieldsRead::one, 2, 0.1), b = gl::make_segment_shader(method, jagged, FieldsRead::one, 2, 0.1);
     EXPECT_EQ(a->source(), b->source());
     EXPECT_EQ(a->table_bytes(), b->table_bytes());
 }

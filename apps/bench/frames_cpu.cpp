@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "apps/scenes/measured_scenes.hpp"
 #include "classify/piece_table.hpp"
 #include "classify/segment_method.hpp"
 #include "render/cpu/kernels.hpp"
@@ -24,32 +25,16 @@ namespace {
 
 enum class Colors { ramp, peaks };
 
-TransferFunction transfer(Colors colors) {
-    if (colors == Colors::ramp)
-        return {OpticalModel::density, {{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.4}, {1, 4.0}}};
-    std::vector<ColorNode> color;
-    std::vector<ExtinctionNode> extinction{{0, 0}};
-    for (int i = 0; i < 6; ++i) {
-        const double s = 0.12 + 0.15 * i;
-        color.push_back({s, {i % 3 == 0 ? 1.0 : 0.2, i % 3 == 1 ? 1.0 : 0.2, i % 3 == 2 ? 1.0 : 0.2}});
-        extinction.insert(extinction.end(), {{s - 0.01, 0}, {s, 20}, {s + 0.01, 0}});
-    }
-    extinction.push_back({1, 0});
-    return {OpticalModel::density, color, extinction};
-}
-
 Scene scene(int boxes, Colors colors) {
     static std::map<int, Scene> scenes;
     Scene& s = scenes[boxes];
     if (!s.mesh) {
         auto mesh = std::make_shared<TetMesh>(testing_support::grid_mesh(boxes, 0.2));
-        s.field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, [](const glm::dvec3& p) {
-            return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z);
-        }));
+        s.field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, scenes::waves));
         s.mesh = std::move(mesh);
     }
     Scene chosen = s;
-    chosen.transfer = std::make_shared<TransferFunction>(transfer(colors));
+    chosen.transfer = std::make_shared<TransferFunction>(colors == Colors::ramp ? scenes::ramp() : scenes::peaks());
     return chosen;
 }
 

@@ -61,10 +61,10 @@ std::string positive_error(std::string& text) {
 }
 
 // Without a GPU the native backend is the faster one by far; what it does not draw, OpenGL does.
-Backend choose_backend(const RenderOptions& options, const Quality& quality) {
+Backend choose_backend(const RenderOptions& options, const Quality& quality, FieldsRead fields) {
     if (options.backend == "gl") return Backend::gl_osmesa;
     if (options.backend == "cpu") return Backend::cpu;
-    return draws(Backend::cpu, quality) || quality.order_per_pixel ? Backend::cpu : Backend::gl_osmesa;
+    return draws(Backend::cpu, quality, fields) || quality.order_per_pixel ? Backend::cpu : Backend::gl_osmesa;
 }
 
 // picture.png → picture_007.png when there are several.
@@ -177,12 +177,13 @@ void render_pictures(const RenderOptions& options) {
     // Everything that can be refused without reading the mesh comes first.
     const ImageSize size = require_possible(options.scene);
     Quality quality{.method = parse_method(options.method, "--method"),
-                     .target = parse_target_format(options.target, "--target"),
-                     .order = order_method(options.order),  // nothing: auto, pixel
-                     .order_per_pixel = options.order == "pixel",
-                     .check_rays = options.verify_order ? rays_of_proof : 0};
-    const Backend backend = choose_backend(options, quality);
-    require_drawn(backend, quality);
+                    .target = parse_target_format(options.target, "--target"),
+                    .order = order_method(options.order),  // nothing: auto, pixel
+                    .order_per_pixel = options.order == "pixel",
+                    .check_rays = options.verify_order ? rays_of_proof : 0};
+    const FieldsRead fields = options.scene.opacity_field.empty() ? FieldsRead::one : FieldsRead::two;
+    const Backend backend = choose_backend(options, quality, fields);
+    require_drawn(backend, quality, fields);
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);
 
@@ -209,14 +210,16 @@ void render_pictures(const RenderOptions& options) {
         const Image image = renderer->render(scene, cameras[i], size, quality, &statistics);
         if (i == 0) statistics.error = error;
         const Stopwatch writing;
-        write(image, file, options,
-              {{"Software", "cellproj " CELLPROJ_VERSION},
-               {"cellproj field", scene.field->name},
-               {"cellproj camera", to_json(cameras[i])},
-               {"cellproj method", statistics.method},
-               {"cellproj target", statistics.target},
-               {"cellproj order", statistics.order},
-               {"cellproj backend", statistics.backend + ", " + statistics.backend_version}});
+        std::map<std::string, std::string> text{
+            {"Software", "cellproj " CELLPROJ_VERSION},
+            {"cellproj field", scene.field->name},
+            {"cellproj camera", to_json(cameras[i])},
+            {"cellproj method", statistics.method},
+            {"cellproj target", statistics.target},
+            {"cellproj order", statistics.order},
+            {"cellproj backend", statistics.backend + ", " + statistics.backend_version}};
+        if (scene.opacity_field) text["cellproj opacity field"] = scene.opacity_field->name;
+        write(image, file, options, text);
         statistics.ms.write = writing.ms();
         warn(image, statistics, file);
         print_line(file, statistics);

@@ -50,16 +50,20 @@ struct ColorRange {
     double low, high;
 };
 
-// --range, or what most of the field lies in: the 1 % at each end are outliers more often than flow.
-ColorRange choose_range(const SceneOptions& options, const ScalarField& field) {
-    if (!options.range.empty()) return {options.range[0], options.range[1]};
+// What most of the field lies in: the 1 % at each end are outliers more often than flow.
+ColorRange usual_range(const ScalarField& field) {
     const ColorRange most{quantile(field.values, 0.01), quantile(field.values, 0.99)};
     if (most.low < most.high) return most;
     const auto whole = range(field.values);
     return {whole.low, whole.high};
 }
 
-TransferFunction preset_transfer(const SceneOptions& options, const Input& input, const ScalarField& field) {
+ColorRange choose_range(const SceneOptions& options, const ScalarField& field) {
+    return options.range.empty() ? usual_range(field) : ColorRange{options.range[0], options.range[1]};
+}
+
+// `opacity`: the opacity field, or null.
+TransferFunction preset_transfer(const SceneOptions& options, const Input& input, const ScalarField& field, const ScalarField* opacity) {
     const auto [low, high] = choose_range(options, field);
     const bool log = options.axis == "log";
     if (log && !(low > 0)) {
@@ -68,16 +72,21 @@ TransferFunction preset_transfer(const SceneOptions& options, const Input& input
                      "give --range LOW,HIGH with LOW > 0"});
     }
     // A cube's diagonal is 2.6 times its mean path.
-    return default_transfer_function(low, high, 2.6 * mean_path(*input.mesh), options.colors,
-                                     log ? ScalarAxis::log : ScalarAxis::linear);
+    const double size = 2.6 * mean_path(*input.mesh);
+    const TransferFunction transfer =
+        default_transfer_function(low, high, size, options.colors, log ? ScalarAxis::log : ScalarAxis::linear);
+    if (!opacity) return transfer;
+    const auto [low_opacity, high_opacity] = usual_range(*opacity);
+    const TransferFunction over_opacity = default_transfer_function(low_opacity, high_opacity, size);
+    return {transfer.model(), transfer.color_nodes(), over_opacity.extinction_nodes()};
 }
 
 std::shared_ptr<const TransferFunction> choose_transfer(const SceneOptions& options, const Input& input,
-                                                        const ScalarField& field) {
-    const bool from_scene = input.transfer && options.field.empty() && !options.colors_chosen;
+                                                        const ScalarField& field, const ScalarField* opacity) {
+    const bool from_scene = input.transfer && options.field.empty() && !opacity && !options.colors_chosen;
     const TransferFunction transfer = !options.transfer.empty() ? read_transfer_function(options.transfer)
                                       : from_scene              ? *input.transfer
-                                                                : preset_transfer(options, input, field);
+                                                                : preset_transfer(options, input, field, opacity);
     return std::make_shared<TransferFunction>(with_scaled_extinction(transfer, options.opacity_scale));
 }
 
@@ -93,13 +102,17 @@ void check_colors(const SceneOptions& options) {
 }
 
 // Cell fields are exact as constants; averaged to the points they look smooth.
-ScalarField choose_field(const SceneOptions& options, const Input& input) {
-    const std::string name =
-        !options.field.empty() ? options.field : field_to_look_at(*input.mesh, input.report.added_points).value_or("");
+ScalarField load_field(const SceneOptions& options, const Input& input, const std::string& name) {
     ScalarField field = select_scalar(*input.mesh, name, input.name);
     if (options.nan) field = with_finite_values(std::move(field), *options.nan);
     const bool averaged = field.location == FieldLocation::cells && options.cell_values == "averaged";
     return averaged ? averaged_to_points(*input.mesh, field) : field;
+}
+
+ScalarField choose_field(const SceneOptions& options, const Input& input) {
+    return load_field(options, input,
+                      !options.field.empty() ? options.field
+                                             : field_to_look_at(*input.mesh, input.report.added_points).value_or(""));
 }
 
 void warn_of_values(const ScalarField& field) {
@@ -122,7 +135,15 @@ LoadedScene load_scene(const SceneOptions& options) {
     Input input = options.tetrahedralize ? load_filled(options.input.file, options.surface) : load(options.input);
     const auto field = std::make_shared<const ScalarField>(choose_field(options, input));
     warn_of_values(*field);
-    Scene scene{input.mesh, field, choose_transfer(options, input, *field)};
+    std::shared_ptr<const ScalarField> opacity;
+    if (!options.opacity_field.empty()) {
+        opacity = std::make_shared<const ScalarField>(load_field(options, input, options.opacity_field));
+        warn_of_values(*opacity);
+    }
+    Scene scene{.mesh = input.mesh,
+                .field = field,
+                .transfer = choose_transfer(options, input, *field, opacity.get()),
+                .opacity_field = opacity};
     return {std::move(input), std::move(scene)};
 }
 
@@ -146,6 +167,8 @@ std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& inp
 void add_scene_options(CLI::App& command, SceneOptions& options) {
     add_input_options(command, options.input);
     command.add_option("--field", options.field, "The field to draw (default: the one that info suggests); vectors by magnitude, or U:x; Points:z: a coordinate");
+    command.add_option("--opacity-field", options.opacity_field,
+                       "Read opacity over this field, and only colour over --field; default opacity: rising over the field's 1-99 % range");
     command.add_option("--cell-values", options.cell_values, "How cell fields are drawn: constant in a cell, or averaged to the points")
         ->check(CLI::IsMember({"constant", "averaged"}))->capture_default_str();
     CLI::Option* transfer = command.add_option("--transfer", options.transfer,

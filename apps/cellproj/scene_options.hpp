@@ -26,7 +26,7 @@ struct SceneOptions {
     bool tetrahedralize = false;
     SurfaceOptions surface;
     std::filesystem::path camera, transfer;
-    std::string field, projection = "perspective", size = "512x512", cell_values = "constant";
+    std::string field, opacity_field, projection = "perspective", size = "512x512", cell_values = "constant";
     std::vector<double> from{-1, -2, 1}, up{0, 0, 1};
     std::optional<double> nan;
     std::string colors, axis = "linear";

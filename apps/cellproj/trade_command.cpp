@@ -32,14 +32,14 @@ struct TradeCommandOptions {
 // What the user of `render` gets: the native backend, and OpenGL for what it does not draw. Each is made when it is wanted first.
 class EitherRenderer : public Renderer {
 public:
-    void prepare(const Scene& scene, const Quality& quality) override { of(quality).prepare(scene, quality); }
+    void prepare(const Scene& scene, const Quality& quality) override { of(scene, quality).prepare(scene, quality); }
     Image render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* statistics) override {
-        return of(quality).render(scene, camera, size, quality, statistics);
+        return of(scene, quality).render(scene, camera, size, quality, statistics);
     }
 
 private:
-    Renderer& of(const Quality& quality) {
-        const bool native = draws(Backend::cpu, quality);
+    Renderer& of(const Scene& scene, const Quality& quality) {
+        const bool native = draws(Backend::cpu, quality, fields_read(scene));
         std::unique_ptr<Renderer>& renderer = native ? cpu_ : gl_;
         if (!renderer) renderer = make_renderer(native ? Backend::cpu : Backend::gl_osmesa);
         return *renderer;
@@ -58,17 +58,26 @@ std::string in_words(const std::string& backend) {
     return backend == "gl" ? "OpenGL on OSMesa" : "the native backend, OpenGL on OSMesa for what it does not draw";
 }
 
+// Those that can draw the scene.
+std::vector<Quality> possible_qualities(const TradeCommandOptions& options) {
+    std::vector<Quality> qualities = trade_qualities();
+    const bool two_fields = !options.scene.opacity_field.empty();
+    std::erase_if(qualities, [&](const Quality& quality) {
+        return (two_fields && !takes_opacity_field(quality.method)) || (options.backend == "cpu" && !draws(Backend::cpu, quality));
+    });
+    return qualities;
+}
+
 // Every method in every target; the usual one where only the other is given.
 std::vector<Quality> choose_qualities(const TradeCommandOptions& options) {
-    if (options.methods.empty() && options.targets.empty()) {
-        std::vector<Quality> all = trade_qualities();
-        if (options.backend == "cpu") std::erase_if(all, [](const Quality& quality) { return !draws(Backend::cpu, quality); });
-        return all;
-    }
+    if (options.methods.empty() && options.targets.empty()) return possible_qualities(options);
     std::vector<Quality> in_usual_target;
-    for (const std::string& method : options.methods) in_usual_target.push_back({.method = parse_method(method, "--method")});
+    for (const std::string& text : options.methods) {
+        in_usual_target.push_back({.method = parse_method(text, "--method")});
+        if (!options.scene.opacity_field.empty()) require_takes_opacity_field(in_usual_target.back().method, "--method");
+    }
     if (options.methods.empty()) {
-        in_usual_target = trade_qualities();
+        in_usual_target = possible_qualities(options);
         std::erase_if(in_usual_target, [](const Quality& quality) { return quality.target != Quality{}.target; });
     }
     if (options.targets.empty()) return in_usual_target;
@@ -140,7 +149,8 @@ void run_trade(const TradeCommandOptions& options) {
     }();
     std::sort(rows.begin(), rows.end(), [](const TradeRow& a, const TradeRow& b) { return a.frame_ms < b.frame_ms; });
 
-    const TradeReport report{.scene = input.name + ", field " + scene.field->name + ", " + std::to_string(scene.mesh->tets.size()) +
+    const std::string opacity = scene.opacity_field ? ", opacity by " + scene.opacity_field->name : "";
+    const TradeReport report{.scene = input.name + ", field " + scene.field->name + opacity + ", " + std::to_string(scene.mesh->tets.size()) +
                                       " tetrahedra, " + options.scene.size,
                              .judged = judged.pixels.size(),
                              .whole_picture = judged.whole_picture,

@@ -82,7 +82,8 @@ public:
     explicit CpuRenderer(int threads) : arena_(threads > 0 ? threads : oneapi::tbb::task_arena::automatic) {}
 
     void prepare(const Scene& scene, const Quality& quality) override {
-        require_drawn(Backend::cpu, quality);
+        require_drawn(Backend::cpu, quality, fields_read(scene));
+        refuse_surfaces(scene, "cpu");
         arena_.execute([&] { prepare_here(scene, quality); });
     }
 
@@ -90,7 +91,8 @@ public:
                  Statistics* statistics) override {
         validate(camera, "camera");
         validate(size, "size");
-        require_drawn(Backend::cpu, quality);
+        require_drawn(Backend::cpu, quality, fields_read(scene));
+        refuse_surfaces(scene, "cpu");
         return arena_.execute([&] { return render_here(scene, camera, size, quality, statistics); });
     }
 

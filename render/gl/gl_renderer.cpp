@@ -85,6 +85,7 @@ void draw(TriangleStream& stream, const ViewOrder& order, Statistics& statistics
 GlRenderer::GlRenderer(OsmesaContext context)
     : context_(current(std::move(context))),
       segments_(make_triangle_stream<StreamVertex>()),
+      two_field_segments_(make_triangle_stream<TwoFieldVertex>()),
       lit_(make_triangle_stream<LitVertex>()) {}
 
 // The OpenGL objects below are deleted in their own context, whatever is current now.
@@ -92,10 +93,11 @@ GlRenderer::~GlRenderer() { context_.make_current(); }
 
 // Brings what depends on the scene and the quality up to date; usually there is nothing to do.
 void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
-    require_drawn(Backend::gl_osmesa, quality);
+    require_drawn(Backend::gl_osmesa, quality, fields_read(scene));
+    refuse_surfaces(scene, "gl_osmesa");
     context_.make_current();
-    const bool same_cells =
-        prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field;
+    const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field &&
+                            prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
         prepared_.emplace(scene);
@@ -105,8 +107,9 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     if (same_transfer && (shader_ || lighting_) && method_ == quality.method) return;
 
     const SceneUnits& units = prepared_->units();
-    const TransferFunction transfer =
-        in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
+    const ScalarSpan span{units.scalar_low, units.scalar_high};
+    const ScalarSpan opacity_span = scene.opacity_field ? ScalarSpan{units.opacity_low, units.opacity_high} : span;
+    const TransferFunction transfer = in_scene_units(*scene.transfer, span, opacity_span, units.length);
     // A walk over all cells, which one method alone wants to know of.
     const double mean_length = quality.method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
     lighting_.reset();
@@ -117,7 +120,7 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
         lighting_ = make_vertex_lighting(quality.method, transfer, longest_segment, mean_length);
     } else if (!keeps || !shader->update(transfer)) {
         shader.reset();  // its memory first
-        shader = make_segment_shader(quality.method, transfer, longest_segment, mean_length);
+        shader = make_segment_shader(quality.method, transfer, fields_read(scene), longest_segment, mean_length);
     }
     shader_ = std::move(shader);
     method_ = quality.method;
@@ -175,12 +178,19 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 
 void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
     const bool perspective = cells.transform().perspective();
+    const bool two_fields = fields_read(prepared_->scene()) == FieldsRead::two;
     const Program& segments =
         program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shader_->source(),
-                std::string(perspective ? "#define PERSPECTIVE\n" : "") + blending_define(method_));
+                std::string(perspective ? "#define PERSPECTIVE\n" : "") + (two_fields ? "#define TWO_FIELDS\n" : "") +
+                    blending_define(method_));
     if (perspective) set_camera(segments, cells);
     shader_->bind(segments);
     segments.use();
+    if (two_fields) {
+        draw<TwoFieldVertex>(two_field_segments_, order, statistics,
+                             [&](const ViewOrder& chunk, TwoFieldBatch& batch) { cells.project(chunk, batch); });
+        return;
+    }
     draw<StreamVertex>(segments_, order, statistics,
                        [&](const ViewOrder& chunk, TriangleBatch& batch) { cells.project(chunk, batch); });
 }

@@ -36,7 +36,7 @@ private:
 
     OsmesaContext context_;
     std::map<std::string, Program> programs_;  // by their text
-    TriangleStream segments_, lit_;
+    TriangleStream segments_, two_field_segments_, lit_;
     Target target_;
     std::optional<PreparedScene> prepared_;
     Method method_;

@@ -9,15 +9,16 @@ namespace cellproj::gl {
 
 const std::string& SegmentShader::vertex_source() const { return shaders::no_cell_glsl; }
 
-std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const TransferFunction& transfer,
+std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const TransferFunction& transfer, FieldsRead fields,
                                                    double max_length, double mean_length) {
     assert(max_length > 0.0 && mean_length > 0.0);
+    assert(fields == FieldsRead::one || takes_opacity_field(method));
     switch (method.kind) {
         case MethodKind::average:
         case MethodKind::homogeneous:
         case MethodKind::linear:
         case MethodKind::stein:
-            return make_sampled_shader(method, transfer);
+            return make_sampled_shader(method, transfer, fields);
         case MethodKind::preint2d:
             return make_preint2d_shader(method, transfer, mean_length);
         case MethodKind::preint2d_exp:
@@ -26,7 +27,7 @@ std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const T
             return make_preint3d_shader(method, transfer, max_length);
         case MethodKind::integral:
         case MethodKind::exact:
-            return make_piece_shader(method, transfer, max_length);
+            return make_piece_shader(method, transfer, fields, max_length);
         default:
             assert(false && "no such method");
             return nullptr;

@@ -4,7 +4,8 @@
 //
 //   vec4 light_of_segment(float s_front, float s_back, float segment)   // associated colour, opacity; scene units
 //
-// with the tables and uniforms it reads. It goes behind shaders/cell.frag. Texture units 0 to 7 are its own.
+// with the tables and uniforms it reads. For a scene with an opacity field the scalars are vec2: that of the colour, that of the
+// extinction (TWO_FIELDS in shaders/cell.frag). It goes behind shaders/cell.frag. Texture units 0 to 7 are its own.
 #pragma once
 
 #include <memory>
@@ -13,6 +14,7 @@
 #include "classify/method.hpp"
 #include "classify/transfer_function.hpp"
 #include "render/gl/objects.hpp"
+#include "render/scene.hpp"
 
 namespace cellproj::gl {
 
@@ -32,14 +34,15 @@ public:
     virtual std::size_t table_bytes() const = 0;
 };
 
-// The parameters are those of make_segment_method (classify/segment_method.hpp).
-std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const TransferFunction& transfer,
+// The parameters are those of make_segment_method (classify/segment_method.hpp). Two fields: only for methods that take them
+// (takes_opacity_field).
+std::unique_ptr<SegmentShader> make_segment_shader(const Method& method, const TransferFunction& transfer, FieldsRead fields,
                                                    double max_length, double mean_length);
 
 // One per family of methods, in methods/.
-std::unique_ptr<SegmentShader> make_sampled_shader(const Method& method, const TransferFunction& transfer);
+std::unique_ptr<SegmentShader> make_sampled_shader(const Method& method, const TransferFunction& transfer, FieldsRead fields);
 std::unique_ptr<SegmentShader> make_piece_shader(const Method& method, const TransferFunction& transfer,  // integral, exact
-                                                 double max_length);
+                                                 FieldsRead fields, double max_length);
 std::unique_ptr<SegmentShader> make_preint2d_shader(const Method& method, const TransferFunction& transfer,
                                                     double mean_length);
 std::unique_ptr<SegmentShader> make_preint2d_exp_shader(const Method& method, const TransferFunction& transfer);

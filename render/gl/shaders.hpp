@@ -21,6 +21,7 @@ extern const std::string pieces_glsl;       // integral and exact: what the next
 extern const std::string pieces_cell_glsl;  // prepare_cell for
 extern const std::string pieces_all_glsl;   // few pieces, one by one
 extern const std::string pieces_walk_glsl;  // many pieces, thin ones at once; needs no prepare_cell
+extern const std::string pieces_two_fields_glsl;  // colour and extinction over two fields; needs no prepare_cell
 extern const std::string preint3d_glsl;
 extern const std::string preint3d_linear_glsl;
 extern const std::string lit_vert;

@@ -21,6 +21,12 @@ constexpr std::array<VertexAttribute, 8> stream_attributes{{{0, 2, offsetof(Stre
                                                             {5, 3, offsetof(StreamVertex, thickness[1])},
                                                             {6, 3, offsetof(StreamVertex, thickness[2])},
                                                             {7, 4, offsetof(StreamVertex, scalar_slope)}}};
+// Behind those of the first field.
+static_assert(sizeof(TwoFieldVertex) == sizeof(StreamVertex) + 6 * sizeof(float));
+constexpr std::array<VertexAttribute, 10> two_field_attributes{
+    {stream_attributes[0], stream_attributes[1], stream_attributes[2], stream_attributes[3], stream_attributes[4],
+     stream_attributes[5], stream_attributes[6], stream_attributes[7], {8, 4, sizeof(StreamVertex)},
+     {9, 2, sizeof(StreamVertex) + 4 * sizeof(float)}}};
 constexpr std::array<VertexAttribute, 4> lit_attributes{{{0, 2, offsetof(LitVertex, x)},
                                                          {1, 1, offsetof(LitVertex, share)},
                                                          {2, 3, offsetof(LitVertex, color)},
@@ -29,6 +35,7 @@ constexpr std::array<VertexAttribute, 4> lit_attributes{{{0, 2, offsetof(LitVert
 }  // namespace
 
 std::span<const VertexAttribute> vertex_attributes(const StreamVertex*) { return stream_attributes; }
+std::span<const VertexAttribute> vertex_attributes(const TwoFieldVertex*) { return two_field_attributes; }
 std::span<const VertexAttribute> vertex_attributes(const LitVertex*) { return lit_attributes; }
 
 TriangleStream::TriangleStream(std::size_t vertex_bytes, std::span<const VertexAttribute> attributes)

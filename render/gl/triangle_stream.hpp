@@ -24,6 +24,7 @@ struct VertexAttribute {
 
 // How a vertex type lies in memory and which locations it goes to: of shaders/cell.vert and shaders/lit.vert.
 std::span<const VertexAttribute> vertex_attributes(const StreamVertex*);
+std::span<const VertexAttribute> vertex_attributes(const TwoFieldVertex*);
 std::span<const VertexAttribute> vertex_attributes(const LitVertex*);
 
 class TriangleStream {

@@ -16,7 +16,7 @@ int main() {
     auto field = std::make_shared<ScalarField>(ScalarField{"p", FieldLocation::points, {0.0, 0.3, 0.6, 1.0}});
     auto transfer = std::make_shared<TransferFunction>(default_transfer_function(0, 1, bounds(mesh->points).diagonal()));
     Camera camera = frame_bounds(bounds(mesh->points), Camera::Projection::perspective, {2, 1, 1}, {0, 0, 1}, 1.0);
-    write_png(make_renderer(Backend::gl_osmesa)->render({mesh, field, transfer}, camera, {512, 512}), "tet.png");
+    write_png(make_renderer(Backend::cpu)->render({mesh, field, transfer}, camera, {512, 512}), "tet.png");
     // end of README
     for (const CellId cell : order_cells(*mesh, camera.viewpoint()))
         std::printf(" %u", cell);

@@ -46,11 +46,56 @@ private:
     Texture pieces_, bins_;
 };
 
+class TwoFieldPieceShader : public SegmentShader {
+public:
+    TwoFieldPieceShader(const TransferFunction& transfer, const WalkLimits& limits)
+        : limits_(limits),
+          is_density_(transfer.model() == OpticalModel::density),
+          color_(make_piece_table(color_alone(transfer))),
+          opacity_(make_piece_table(extinction_alone(transfer))) {}
+
+    const std::string& source() const override {
+        static const std::string text = shaders::pieces_glsl + shaders::pieces_two_fields_glsl;
+        return text;
+    }
+
+    void bind(const Program& program) const override {
+        program.set("bin_count", color_.bin_count);
+        program.set("opacity_bin_count", opacity_.bin_count);
+        program.set("is_density", is_density_ ? 1.0F : 0.0F);
+        program.set("step_depth", static_cast<float>(limits_.step_depth));
+        program.set("deepest", static_cast<float>(limits_.deepest));
+        color_.pieces.bind(0);
+        color_.bins.bind(1);
+        opacity_.pieces.bind(2);
+        opacity_.bins.bind(3);
+    }
+
+    std::size_t table_bytes() const override {
+        return color_.pieces.bytes() + color_.bins.bytes() + opacity_.pieces.bytes() + opacity_.bins.bytes();
+    }
+
+private:
+    struct Uploaded {
+        explicit Uploaded(const PieceTable& table)
+            : bin_count(static_cast<float>(table.bin_count())), pieces(Texture::list(table.pieces)), bins(Texture::list(table.bins)) {}
+
+        float bin_count;
+        Texture pieces, bins;
+    };
+
+    WalkLimits limits_;
+    bool is_density_;
+    Uploaded color_, opacity_;
+};
+
 }  // namespace
 
-std::unique_ptr<SegmentShader> make_piece_shader(const Method& method, const TransferFunction& transfer,
+std::unique_ptr<SegmentShader> make_piece_shader(const Method& method, const TransferFunction& transfer, FieldsRead fields,
                                                  double max_length) {
     const PieceTable table = make_piece_table(transfer);
+    if (fields == FieldsRead::two)
+        return std::make_unique<TwoFieldPieceShader>(transfer, walk_limits(method, table, max_length));
     return std::make_unique<PieceShader>(table, walk_limits(method, table, max_length));
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cassert>
-#include <optional>
 #include <utility>
+#include <vector>
 
 #include "classify/sampled_function.hpp"
 #include "render/gl/segment_shader.hpp"
@@ -19,11 +19,11 @@ struct Uniform {
 
 class SampledShader : public SegmentShader {
 public:
-    SampledShader(const std::string& source, Sampled sampled, std::optional<Uniform> choice,
+    SampledShader(const std::string& source, Sampled sampled, std::vector<Uniform> choices,
                   const TransferFunction& transfer)
         : source_(shaders::sampled_glsl + source),
           sampled_(sampled),
-          choice_(choice),
+          choices_(std::move(choices)),
           samples_(Texture::list(SampledFunction(transfer, sampled).texels())) {}
 
     const std::string& source() const override { return source_; }
@@ -36,7 +36,7 @@ public:
     }
 
     void bind(const Program& program) const override {
-        if (choice_) program.set(choice_->name, choice_->value);
+        for (const Uniform& choice : choices_) program.set(choice.name, choice.value);
         samples_.bind(0);
     }
 
@@ -45,15 +45,18 @@ public:
 private:
     std::string source_;
     Sampled sampled_;
-    std::optional<Uniform> choice_;
+    std::vector<Uniform> choices_;
     Texture samples_;
 };
 
 }  // namespace
 
-std::unique_ptr<SegmentShader> make_sampled_shader(const Method& method, const TransferFunction& transfer) {
-    const auto make = [&](const std::string& source, Sampled sampled, std::optional<Uniform> choice = std::nullopt) {
-        return std::make_unique<SampledShader>(source, sampled, choice, transfer);
+std::unique_ptr<SegmentShader> make_sampled_shader(const Method& method, const TransferFunction& transfer, FieldsRead fields) {
+    const bool density = transfer.model() == OpticalModel::density, two = fields == FieldsRead::two;
+    // Of two fields no sample knows the emission: it is made of both in the fragment.
+    const auto make = [&](const std::string& source, Sampled sampled, std::vector<Uniform> choices = {}) {
+        if (two) choices.push_back({"is_product", density && sampled == Sampled::emission ? 1.0F : 0.0F});
+        return std::make_unique<SampledShader>(source, two ? Sampled::color : sampled, std::move(choices), transfer);
     };
     switch (method.kind) {
         case MethodKind::average:
@@ -61,13 +64,12 @@ std::unique_ptr<SegmentShader> make_sampled_shader(const Method& method, const T
         case MethodKind::homogeneous:
             return make(shaders::homogeneous_glsl, Sampled::emission);
         case MethodKind::linear:
-            return make(shaders::linear_glsl, Sampled::emission, Uniform{"steps", static_cast<float>(method.size)});
+            return make(shaders::linear_glsl, Sampled::emission, {{"steps", static_cast<float>(method.size)}});
         default:
             break;
     }
     assert(method.kind == MethodKind::stein);
-    const bool density = transfer.model() == OpticalModel::density;
-    return make(shaders::stein_glsl, Sampled::color, Uniform{"by_chromaticity", density ? 1.0F : 0.0F});
+    return make(shaders::stein_glsl, Sampled::color, {{"by_chromaticity", density ? 1.0F : 0.0F}});
 }
 
 }  // namespace cellproj::gl

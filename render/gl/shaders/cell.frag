@@ -5,6 +5,13 @@ in vec3 v_ridges;
 flat in vec4 v_base_depth, v_base_scalar;
 flat in mat3 v_thickness;
 flat in vec4 v_cell;
+#ifdef TWO_FIELDS
+flat in vec4 v_opacity_scalar;
+flat in vec2 v_opacity_range;
+#define scalars vec2  // that of the colour, that of the extinction
+#else
+#define scalars float
+#endif
 
 uniform vec2 principal_point;   // pixels
 uniform float pixels_per_unit;  // perspective: pixels per length at depth 1
@@ -13,7 +20,7 @@ uniform float inverse_near;     // perspective: 1 / depth of the near plane
 layout(location = 0) out vec4 light;  // associated colour, opacity
 
 // Scalars 0..1, length >= 0, all in scene units.
-vec4 light_of_segment(float s_front, float s_back, float segment);
+vec4 light_of_segment(scalars s_front, scalars s_back, float segment);
 
 // (1 - exp(-d)) / d. Below 1/16 the difference would lose digits; the next term of the series is d^4 / 120 < 2e-7.
 float attenuation_mean(float d) {
@@ -42,6 +49,11 @@ void main() {
     float other_scalar = base_scalar + v_cell.x * thickness;
     bool base_is_front = v_cell.w > 0.0;
     vec2 s = base_is_front ? vec2(base_scalar, other_scalar) : vec2(other_scalar, base_scalar);  // front, back
+#ifdef TWO_FIELDS
+    float base_opacity = dot(v_opacity_scalar.xyz, place);
+    float other_opacity = base_opacity + v_opacity_scalar.w * thickness;
+    vec2 s_opacity = base_is_front ? vec2(base_opacity, other_opacity) : vec2(other_opacity, base_opacity);
+#endif
 #ifdef PERSPECTIVE
     float front = base_is_front ? base_depth : base_depth + thickness;  // 1 / depth, nearer is larger
     float back = front - thickness;
@@ -49,6 +61,9 @@ void main() {
     bool at_near_plane = front > 0.999 * inverse_near;
     float depth_difference = at_near_plane ? 1.0 / back : thickness / (front * back);
     s /= vec2(front, back);
+#ifdef TWO_FIELDS
+    s_opacity /= vec2(front, back);
+#endif
     vec2 offset = (gl_FragCoord.xy - principal_point) / pixels_per_unit;
     float ray = length(vec3(offset, 1.0));
 #else
@@ -58,7 +73,12 @@ void main() {
     // Pixel centres just outside a sliver extrapolate; no segment leaves the cell's own range.
     float segment = min(abs(depth_difference), abs(v_cell.w)) * ray;
     s = clamp(s, v_cell.y, v_cell.z);
+#ifdef TWO_FIELDS
+    s_opacity = clamp(s_opacity, v_opacity_range.x, v_opacity_range.y);
+    light = light_of_segment(vec2(s.x, s_opacity.x), vec2(s.y, s_opacity.y), segment);
+#else
     light = light_of_segment(s.x, s.y, segment);
+#endif
     // Less than nothing, close to an edge: what undoes the blending of this light. Dense media hide it.
     if (depth_difference < 0.0) light *= light.a < 0.25 ? -1.0 / (1.0 - light.a) : 0.0;
 #ifdef HALF_OPACITY  // three passes in one: classify/half_opacity.hpp

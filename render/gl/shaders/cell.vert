@@ -8,6 +8,13 @@ layout(location = 2) in vec4 base_depth;   // depth term on the base, as a plane
 layout(location = 3) in vec4 base_scalar;  // scalar term on the base, as a plane; y of the origin
 layout(location = 4) in mat3 thickness;    // a plane for each ridge
 layout(location = 7) in vec4 cell;         // scalar slope, lowest and highest scalar, depth range (negative: base at the back)
+#ifdef TWO_FIELDS
+layout(location = 8) in vec4 opacity_scalar;  // of the opacity field: term on the base, as a plane; slope
+layout(location = 9) in vec2 opacity_range;   // lowest and highest
+
+flat out vec4 v_opacity_scalar;
+flat out vec2 v_opacity_range;
+#endif
 
 out vec3 v_ridges;
 flat out vec4 v_base_depth, v_base_scalar;
@@ -24,5 +31,9 @@ void main() {
     v_base_scalar = base_scalar;
     v_thickness = thickness;
     v_cell = cell;
+#ifdef TWO_FIELDS
+    v_opacity_scalar = opacity_scalar;
+    v_opacity_range = opacity_range;
+#endif
     gl_Position = vec4(position, 0.0, 1.0);
 }

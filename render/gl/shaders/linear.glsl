@@ -2,7 +2,7 @@
 // WVG91, exponential linear: homogeneous steps of equal length, each as the function is in its middle.
 uniform float steps;
 
-vec4 light_of_segment(float s_front, float s_back, float segment) {
+vec4 light_of_segment(scalars s_front, scalars s_back, float segment) {
     float step_length = segment / steps;
     vec3 color = vec3(0.0);
     float depth = 0.0;

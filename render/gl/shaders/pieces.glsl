@@ -11,7 +11,7 @@ const vec4 gauss_position = vec4(0.06943184420297371, 0.33000947820757187, 0.669
 const vec4 gauss_weight = vec4(0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693);
 
 // The last piece that begins at or below s.
-int piece_of(float s) {
+int piece_in(samplerBuffer pieces, samplerBuffer bins, float bin_count, float s) {
     vec4 bin = texelFetch(bins, int(s * bin_count));
     int first = int(bin.x), last = int(bin.y);
     float cut = bin.z;
@@ -22,3 +22,5 @@ int piece_of(float s) {
     }
     return first;
 }
+
+int piece_of(float s) { return piece_in(pieces, bins, bin_count, s); }

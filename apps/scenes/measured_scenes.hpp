@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is measured, everywhere the same: a field in the unit cube and the two transfer functions whose errors and times the issues
+// state. A smooth ramp is what samplers are best at; of six narrow peaks most cells that hold light hold a node.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "classify/transfer_function.hpp"
+
+namespace cellproj::scenes {
+
+// 0..1 over the unit cube; curved, so that its isosurfaces cross cells in all directions.
+inline double waves(const glm::dvec3& p) { return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z); }
+
+// Optical depth 0.4 .. 4 through `size` mesh units, for scalars low..high, low < high.
+inline TransferFunction ramp(double low = 0, double high = 1, double size = 1) {
+    return {OpticalModel::density, {{low, {0.1, 0.2, 0.9}}, {high, {1.0, 0.6, 0.0}}}, {{low, 0.4 / size}, {high, 4.0 / size}}};
+}
+
+// Six coloured tents of half width 0.01 of low..high, their tops of optical depth 20 through `size` mesh units; nothing between.
+inline TransferFunction peaks(double low = 0, double high = 1, double size = 1) {
+    const auto at = [&](double share) { return low + share * (high - low); };
+    std::vector<ColorNode> colors;
+    std::vector<ExtinctionNode> extinctions{{low, 0}};
+    for (int i = 0; i < 6; ++i) {
+        const double center = 0.12 + 0.15 * i;
+        colors.push_back({at(center), {i % 3 == 0 ? 1.0 : 0.2, i % 3 == 1 ? 1.0 : 0.2, i % 3 == 2 ? 1.0 : 0.2}});
+        extinctions.insert(extinctions.end(), {{at(center - 0.01), 0}, {at(center), 20 / size}, {at(center + 0.01), 0}});
+    }
+    extinctions.push_back({high, 0});
+    return {OpticalModel::density, colors, extinctions};
+}
+
+}  // namespace cellproj::scenes

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The judge of regular grids, as reference.hpp is that of meshes: RKE00 Eq. 1 in float64 along the ray through the
+// pixel, with the true trilinear scalar in every cell (a cubic along the ray), integrated to convergence
+// (cubic_light.hpp).
+//
+// What counts:
+// - Fields on points are trilinear in a cell, fields on cells constant. Blanked cells are empty.
+// - Perspective rays begin at the eye, parallel ones at infinity.
+// - A ray that runs in a plane of the grid is in the cells above it (towards +x, +y, +z); in the outermost plane there,
+// it is
+//   outside.
+//
+// Accuracy: 1e-10 absolute for colours within 0..1, besides what it changes to move the axes by 1e-15 times the grid's
+// size, its distance from the origin or the eye's distance. Tests: grid_reference_test.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "classify/transfer_function.hpp"
+#include "mesh/grid.hpp"
+#include "project/camera.hpp"
+#include "render/cubic_light.hpp"
+#include "render/reference.hpp"
+
+namespace cellproj {
+
+// A part of a ray inside one cell that is not blanked.
+struct GridCrossing {
+    GridCell cell;
+    double enter, leave;  // lengths along the ray from its origin, enter < leave
+};
+
+// The cells along a ray, front to back; only ahead of its origin where `from_origin` (perspective). `direction` has
+// unit length. Each crossing begins where the one before ends, but for blanked cells between them.
+std::vector<GridCrossing> cells_along(const Grid& grid, const ScreenTransform::Ray& ray, bool from_origin);
+
+// The trilinear scalar of a cell from `enter` to `leave`.
+Cubic scalar_along(const Grid& grid, const GridCrossing& crossing, const ScreenTransform::Ray& ray);
+
+// Immutable: any number of threads may ask at once.
+class GridReference {
+public:
+    // Neither may be null. Throws Error (data) when the grid is refused by `validate`.
+    GridReference(std::shared_ptr<const Grid> grid, std::shared_ptr<const TransferFunction> transfer);
+
+    Light light(const ScreenTransform::Ray& ray, bool from_origin) const;
+
+    // The truth of these pixels at their centres, in their order (low = high = light). Parallel over pixels, the same
+    // for any number of threads. Throws Error (option) for an unusable camera or size.
+    std::vector<PixelTruth> pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels) const;
+
+private:
+    std::shared_ptr<const Grid> grid_;
+    std::shared_ptr<const TransferFunction> transfer_;
+};
+
+}  // namespace cellproj
