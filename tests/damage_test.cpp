@@ -166,7 +166,7 @@ void try_cuts(const DamageSample& sample, const fs::path& entry, const Content& 
 }
 
 // VTK's readers, where most formats spend their time, are not instrumented: the sanitizers see 20 flips of each format only.
-constexpr std::size_t flips = CELLPROJ_SANITIZED ? 20 : 200;
+constexpr std::size_t flips = CELLPROJ_SANITIZED ? 10 : 200;
 
 // All flips, spread over the files; `at_once` of them in each try.
 void try_flips(const DamageSample& sample, const fs::path& entry, const Content& whole, Findings& findings) {
