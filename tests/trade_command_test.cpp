@@ -116,7 +116,8 @@ TEST_F(TradeCommand, ThePageHoldsAllItShows) {
 
 TEST_F(TradeCommand, DrawsByTheBackendThatIsAskedFor) {
     ASSERT_EQ(run("trade", "--backend gl --method average --method integral --rounds 1 --json t.json").code, 0);
-    for (const auto& row : nlohmann::json::parse(read("t.json")).at("methods")) EXPECT_EQ(row.at("backend"), "gl_osmesa");
+    const auto by_gl = nlohmann::json::parse(read("t.json"));
+    for (const auto& row : by_gl.at("methods")) EXPECT_EQ(row.at("backend"), "gl_osmesa");
     const Outcome all = run("trade", "--backend cpu --rounds 1 --json t.json");  // of all methods, those that it draws
     ASSERT_EQ(all.code, 0) << all.text;
     const auto json = nlohmann::json::parse(read("t.json"));
