@@ -79,9 +79,9 @@ void main() {
 #else
     light = light_of_segment(s.x, s.y, segment);
 #endif
-    // Less than nothing, close to an edge: what undoes the blending of this light. Dense media hide it.
-    if (depth_difference < 0.0) light *= light.a < 0.25 ? -1.0 / (1.0 - light.a) : 0.0;
 #ifdef HALF_OPACITY  // three passes in one: classify/half_opacity.hpp
     light *= vec4(vec3(1.0 - 0.5 * light.a), 1.0 - 0.25 * light.a);
 #endif
+    // Less than nothing, close to an edge: what undoes the blending of this light. Dense media hide it.
+    if (depth_difference < 0.0) light *= light.a < 0.25 ? -1.0 / (1.0 - light.a) : 0.0;
 }
