@@ -11,6 +11,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "render/scene_view.hpp"
+
 namespace cellproj {
 
 namespace {
@@ -23,15 +25,6 @@ constexpr double snaps_per_pixel = 256.0;
 
 // How far beyond the picture triangles may reach, in pictures. Within it, float32 positions are good to 1e-6 of the picture.
 constexpr double guard_pictures = 1.0;
-
-// The camera with lengths in the units of the scene, relative to its eye: large coordinates cancel in float64, once.
-ScreenTransform relative_transform(const Camera& camera, ImageSize size, double length) {
-    Camera relative = camera;
-    relative.center = (camera.center - camera.eye) / length;
-    relative.eye = glm::dvec3(0.0);
-    relative.height = camera.height / length;
-    return {relative, size};
-}
 
 // Radiance in float32: what is brighter than this does not come through, so that sums over all cells of a ray stay finite.
 constexpr double brightest_color = 1e30;
@@ -100,9 +93,8 @@ LitCorner mix(const LitCorner& a, const LitCorner& b, double t) {
 }  // namespace
 
 CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size)
-    : prepared_(prepared), eye_(camera.eye), transform_(relative_transform(camera, size, prepared.units().length)) {
-    const double distance = glm::distance(camera.eye, camera.center) / prepared.units().length;
-    near_depth_ = 1e-3 * std::min(distance, 1.0);
+    : prepared_(prepared), eye_(camera.eye), transform_(relative_transform(camera, size, prepared.units().length)),
+      near_depth_(near_plane_depth(camera, prepared.units().length)) {
     const glm::dvec2 picture(size.width, size.height);
     guard_ = {-guard_pictures * picture, (1 + guard_pictures) * picture};
 

@@ -9,26 +9,17 @@
 
 #include <glm/common.hpp>
 
+#include "render/ray_quadrature.hpp"
+
 namespace cellproj {
 
 namespace {
 
-// Gauss–Legendre on 0..1 (Abramowitz and Stegun, Table 25.4), upper halves: the nodes lie at 1/2 ± offset.
-struct GaussPair {
-    double offset, weight;
-};
-constexpr std::array<GaussPair, 4> eight_points{{{0.09171732124782490, 0.18134189168918099},
-                                                 {0.26276620495816450, 0.15685332293894364},
-                                                 {0.39833323870681336, 0.11119051722668724},
-                                                 {0.48014492824876812, 0.05061426814518813}}};
 constexpr double two_points_offset = 0.28867513459481288;  // 1/√12: exact for cubics
 
 // e^(−D)·q with D of degree 4 and q of degree 6: the rule integrates the powers D⁰, D¹, D² exactly (degree 15). D³/3!
 // is left, 4e-5 of the light, of degree at most 18: its remainder is below 1e-9 of that (that of t¹⁶ is 4e-10).
 constexpr double largest_depth = 1.0 / 16;
-
-// Behind this depth a stretch that adds less than `negligible` is left out.
-constexpr double dark_depth = 40.0, negligible = 1e-16;
 
 // Where the derivative, 3 times the quadratic with control points d, vanishes inside 0..1.
 std::vector<double> turning_points(const Cubic& s) {

@@ -8,27 +8,18 @@
 
 #include <glm/common.hpp>
 
+#include "render/ray_quadrature.hpp"
+
 namespace cellproj {
 
 namespace {
 
-// Gauss–Legendre on 0..1 (Abramowitz and Stegun, Table 25.4), upper halves: the nodes lie at 1/2 ± offset.
-struct GaussPair {
-    double offset, weight;
-};
-constexpr std::array<GaussPair, 4> eight_points{{{0.09171732124782490, 0.18134189168918099},
-                                                 {0.26276620495816450, 0.15685332293894364},
-                                                 {0.39833323870681336, 0.11119051722668724},
-                                                 {0.48014492824876812, 0.05061426814518813}}};
 constexpr std::array<GaussPair, 2> four_points{
     {{0.16999052179242813, 0.32607257743127307}, {0.43056815579702629, 0.17392742256872693}}};
 
 // e^(−D) times a quadratic, relative error: D⁷/7! · 4e-10 for eight points, D³/3! · 2e-5 for four (the remainder f⁽²ⁿ⁾ of the
 // first power of D that the rule does not integrate exactly; D itself is quadratic). 5e-16 and 2e-13.
 constexpr double eight_points_depth = 0.5, four_points_depth = 1.0 / 256;
-
-// Behind this depth a stretch that adds less than `negligible` is left out.
-constexpr double dark_depth = 40.0, negligible = 1e-16;
 
 struct Weights {
     double front = 0, middle = 0, back = 0;

@@ -10,19 +10,11 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
+#include "render/scene_view.hpp"
 
 namespace cellproj::cpu {
 
 namespace {
-
-// The camera with lengths in the units of the scene, relative to its eye: large coordinates cancel in float64, once.
-ScreenTransform relative_transform(const Camera& camera, ImageSize size, double length) {
-    Camera relative = camera;
-    relative.center = (camera.center - camera.eye) / length;
-    relative.eye = glm::dvec3(0.0);
-    relative.height = camera.height / length;
-    return {relative, size};
-}
 
 // Products of such coordinates stay finite in float32; no pixel lies beyond.
 float screen_coordinate(double pixels) { return static_cast<float>(std::clamp(pixels, -1e12, 1e12)); }
@@ -57,7 +49,7 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
     const double unit = prepared_->units().length;
     eye_ = camera.eye;
     transform_ = relative_transform(camera, size, unit);
-    near_depth_ = 1e-3 * std::min(glm::distance(camera.eye, camera.center) / unit, 1.0);
+    near_depth_ = near_plane_depth(camera, unit);
 
     // Half the diagonal is the unit: the mesh lies within 1 of its middle.
     const Bounds box = bounds(mesh.points);
