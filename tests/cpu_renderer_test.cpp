@@ -13,6 +13,7 @@
 #include <random>
 #include <string>
 
+#include "apps/scenes/measured_scenes.hpp"
 #include "classify/piece_table.hpp"
 #include "classify/segment_method.hpp"
 #include "mesh/error.hpp"
@@ -35,6 +36,7 @@ using testing_support::ramp;
 using testing_support::scene_of;
 using testing_support::unit_tet;
 using testing_support::view_of_unit_cube;
+using scenes::waves;
 
 using Projection = Camera::Projection;
 constexpr ImageSize small{96, 96};
@@ -45,20 +47,8 @@ Renderer& cpu() {
     return *shared;
 }
 
-double waves(const glm::dvec3& p) { return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z); }
-
 // Six coloured peaks of half width .01: most cells hold a node, many hold several.
-TransferFunction peaks(double extinction = 20.0) {
-    std::vector<ColorNode> colors;
-    std::vector<ExtinctionNode> extinctions{{0, 0}};
-    for (int i = 0; i < 6; ++i) {
-        const double s = 0.12 + 0.15 * i;
-        colors.push_back({s, {i % 3 == 0 ? 1.0 : 0.2, i % 3 == 1 ? 1.0 : 0.2, i % 3 == 2 ? 1.0 : 0.2}});
-        extinctions.insert(extinctions.end(), {{s - 0.01, 0}, {s, extinction}, {s + 0.01, 0}});
-    }
-    extinctions.push_back({1, 0});
-    return {OpticalModel::density, colors, extinctions};
-}
+TransferFunction peaks(double extinction = 20.0) { return scenes::peaks(0, 1, 20 / extinction); }
 
 double max_difference(const Image& a, const Image& b) {
     EXPECT_EQ(a.pixels.size(), b.pixels.size());

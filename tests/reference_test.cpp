@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The judge against closed forms: boxes, slabs, overlapping and cyclic cells, gaps; and the renderer against the judge.
+#include "apps/scenes/measured_scenes.hpp"
 #include "render/reference.hpp"
 
 #include <gtest/gtest.h>
@@ -389,10 +390,7 @@ TEST(Reference, ManyThinCells) {
 
 // The renderer, on a curved field over an irregular mesh: 2e-3, its table's error, for a picture moved by 1/512 of a pixel.
 TEST_P(ReferenceOfEither, TheRendererAgrees) {
-    const auto f = [](const glm::dvec3& p) {
-        return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z);
-    };
-    const Scene scene = scene_of(delaunay_mesh(1500, 8), f, ramp());
+    const Scene scene = scene_of(delaunay_mesh(1500, 8), scenes::waves, ramp());
     const Camera camera = view_of_unit_cube(GetParam());
     const ImageSize size{64, 64};
     const Image image = make_renderer(Backend::gl_osmesa)->render(scene, camera, size);

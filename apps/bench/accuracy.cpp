@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/scenes/measured_scenes.hpp"
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/meshes.hpp"
@@ -24,24 +25,6 @@ namespace {
 using namespace cellproj;
 
 constexpr ImageSize size{512, 512};
-
-TransferFunction smooth_ramp() {
-    return {OpticalModel::density, {{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.4}, {1, 4.0}}};
-}
-
-// Half width .01 of the range, peak optical depth 20 per unit length.
-TransferFunction narrow_peaks() {
-    std::vector<ColorNode> colors;
-    std::vector<ExtinctionNode> extinctions{{0, 0}};
-    for (int k = 0; k < 6; ++k) {
-        const double s = 0.1 + 0.16 * k;
-        colors.push_back({s, {k % 2 == 0 ? 1.0 : 0.2, 0.15 * k, k % 3 == 0 ? 1.0 : 0.1}});
-        extinctions.insert(extinctions.end(), {{s - 0.01, 0}, {s, 20}, {s + 0.01, 0}});
-    }
-    return {OpticalModel::density, colors, extinctions};
-}
-
-double waves(const glm::dvec3& p) { return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z); }
 
 std::size_t pixels_above(const Image& image, const std::vector<PixelTruth>& truths, double bound) {
     std::size_t count = 0;
@@ -54,12 +37,12 @@ std::size_t pixels_above(const Image& image, const std::vector<PixelTruth>& trut
 
 void measure(const std::vector<std::string>& methods) {
     const auto mesh = std::make_shared<const TetMesh>(testing_support::delaunay_mesh(30800, 1));
-    const auto field = std::make_shared<const ScalarField>(testing_support::point_field(*mesh, waves));
+    const auto field = std::make_shared<const ScalarField>(testing_support::point_field(*mesh, scenes::waves));
     std::printf("%zu cells, %dx%d, every pixel judged within 1/512 of a pixel; errors of RGB, pixels by RGBA\n", mesh->tets.size(), size.width, size.height);
     std::printf("%-6s %-12s %-4s %-18s %9s %9s %9s %13s\n", "", "", "", "method", "RMS", "99 %", "max", "above 1e-4");
     std::shared_ptr<const RayIndex> index;
     for (const bool ramp : {true, false}) {
-        const Scene scene{mesh, field, std::make_shared<TransferFunction>(ramp ? smooth_ramp() : narrow_peaks())};
+        const Scene scene{mesh, field, std::make_shared<TransferFunction>(ramp ? scenes::ramp() : scenes::table_peaks())};
         const Reference reference(scene, index);
         index = reference.shared_index();
         for (const auto projection : {Camera::Projection::parallel, Camera::Projection::perspective}) {

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "apps/scenes/measured_scenes.hpp"
 #include "classify/isosurface.hpp"
 #include "mesh/gradient.hpp"
 #include "render/reference.hpp"
@@ -85,11 +86,9 @@ void MakeIsoTable(benchmark::State& state) {
 }
 BENCHMARK(MakeIsoTable)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond);
 
-double waves(const glm::dvec3& p) { return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z); }
-
 void CellGradients(benchmark::State& state) {
     const TetMesh mesh = testing_support::grid_mesh(34, 0.2, 1);
-    const ScalarField field = testing_support::point_field(mesh, waves);
+    const ScalarField field = testing_support::point_field(mesh, scenes::waves);
     for (auto _ : state)
         benchmark::DoNotOptimize(cell_gradients(mesh, field).values.data());
 }
@@ -97,7 +96,7 @@ BENCHMARK(CellGradients)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()
 
 void VertexGradients(benchmark::State& state) {
     const TetMesh mesh = testing_support::grid_mesh(34, 0.2, 1);
-    const ScalarField field = testing_support::point_field(mesh, waves);
+    const ScalarField field = testing_support::point_field(mesh, scenes::waves);
     const Gradients cells = cell_gradients(mesh, field);
     for (auto _ : state)
         benchmark::DoNotOptimize(vertex_gradients(mesh, field, cells).values.data());
@@ -107,7 +106,7 @@ BENCHMARK(VertexGradients)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime
 // Rays of a picture of 64×64 of 196,520 cells: 0, 1, 10, 100 translucent surfaces in a medium, smooth.
 void ReferenceWithIsosurfaces(benchmark::State& state) {
     auto mesh = std::make_shared<TetMesh>(testing_support::grid_mesh(34, 0.2, 1));
-    auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, waves));
+    auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, scenes::waves));
     const auto transfer = std::make_shared<TransferFunction>(
         OpticalModel::density, std::vector<ColorNode>{{0, {0.1, 0.2, 0.9}}, {1, {1, 0.6, 0}}},
         std::vector<ExtinctionNode>{{0, 0.1}, {1, 3}});

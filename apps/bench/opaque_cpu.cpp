@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/scenes/measured_scenes.hpp"
 #include "classify/piece_table.hpp"
 #include "classify/segment_method.hpp"
 #include "render/cpu/kernels.hpp"
@@ -23,9 +24,7 @@ constexpr int side = 512;
 
 Scene scene(int boxes) {
     auto mesh = std::make_shared<TetMesh>(testing_support::grid_mesh(boxes, 0.2));
-    auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, [](const glm::dvec3& p) {
-        return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z);
-    }));
+    auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, scenes::waves));
     // 1e-4 shines through 0.12 of the cube's edge, a tenth of its mean depth in these views.
     auto transfer = std::make_shared<TransferFunction>(OpticalModel::density, std::vector<ColorNode>{{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}},
                                                        std::vector<ExtinctionNode>{{0, 77}, {1, 77}});

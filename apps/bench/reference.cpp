@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "apps/scenes/measured_scenes.hpp"
 #include "mesh/read.hpp"
 #include "mesh/tetrahedralize.hpp"
 #include "render/reference.hpp"
@@ -30,9 +31,7 @@ struct View {
 const View& grid() {
     static const View view = [] {
         auto mesh = std::make_shared<TetMesh>(testing_support::grid_mesh(34, 0.2, 1));
-        auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, [](const glm::dvec3& p) {
-            return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z);
-        }));
+        auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, scenes::waves));
         auto transfer = std::make_shared<TransferFunction>(OpticalModel::density,
                                                            std::vector<ColorNode>{{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}},
                                                            std::vector<ExtinctionNode>{{0, 0.1}, {1, 3.0}});

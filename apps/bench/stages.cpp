@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "apps/scenes/measured_scenes.hpp"
 #include "classify/preintegration_table.hpp"
 #include "render/cell_stream.hpp"
 #include "render/prepared_scene.hpp"
@@ -36,9 +37,7 @@ const Scene& scene(int boxes) {
     Scene& s = scenes[boxes];
     if (!s.mesh) {
         auto mesh = std::make_shared<TetMesh>(testing_support::grid_mesh(boxes, 0.2, 1));
-        s.field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, [](const glm::dvec3& p) {
-            return 0.5 + 0.25 * std::sin(9 * p.x) * std::cos(7 * p.y) + 0.25 * std::sin(5 * p.z);
-        }));
+        s.field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, scenes::waves));
         s.mesh = std::move(mesh);
         s.transfer = std::make_shared<TransferFunction>(ramp());
     }

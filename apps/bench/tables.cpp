@@ -14,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include "apps/scenes/measured_scenes.hpp"
 #include "classify/mean_tables.hpp"
 #include "classify/preintegration_table.hpp"
 #include "classify/segment_integral.hpp"
@@ -30,22 +31,6 @@ TransferFunction hills(double changed = 4.0) {
     return {OpticalModel::density,
             {{0, {0.1, 0.2, 0.9}}, {0.3, {0.1, 0.9, 0.3}}, {0.6, {0.9, 0.9, 0.1}}, {1, {1.0, 0.3, 0.0}}},
             {{0, 0.1}, {0.2, 3.0}, {0.24, changed}, {0.28, 2.0}, {0.7, 0.0}, {1, 6.0}}};
-}
-
-// Six peaks of half width .01, peak optical depth 20 per unit length.
-TransferFunction peaks() {
-    std::vector<ColorNode> colors;
-    std::vector<ExtinctionNode> extinctions{{0, 0}};
-    for (int k = 0; k < 6; ++k) {
-        const double s = 0.1 + 0.16 * k;
-        colors.push_back({s, {k % 2 == 0 ? 1.0 : 0.2, 0.15 * k, k % 3 == 0 ? 1.0 : 0.1}});
-        extinctions.insert(extinctions.end(), {{s - 0.01, 0}, {s, 20}, {s + 0.01, 0}});
-    }
-    return {OpticalModel::density, colors, extinctions};
-}
-
-TransferFunction ramp() {
-    return {OpticalModel::density, {{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.4}, {1, 4.0}}};
 }
 
 // The two tables over (s_f, s_b), with and without self-attenuation, and the one over l as well.
@@ -122,7 +107,7 @@ void Ratio(benchmark::State& state) {
 void Error(benchmark::State& state, const std::string& name) {
     const bool narrow = state.range(0) != 0;
     const double reach = state.range(1) != 0 ? 10.0 : 1.0;
-    const TransferFunction f = narrow ? peaks() : ramp();
+    const TransferFunction f = narrow ? scenes::table_peaks() : scenes::ramp();
     const auto method = make_segment_method(parse_method(name), f, longest, usual);
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
