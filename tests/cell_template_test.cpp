@@ -18,6 +18,7 @@
 
 #include "mesh/grid.hpp"
 #include "tests/support/box_faces.hpp"
+#include "tests/support/tet_rays.hpp"
 
 namespace cellproj {
 namespace {
@@ -437,24 +438,16 @@ TEST_P(TemplateOnTheScreen, InterpolatedTermsAreTheSegmentOfTheRay) {
             }
             size = std::abs(area(outline));
             if (size < 1) continue;  // less than a pixel: the ray through a rounded point may miss it
-            double front = v.front_depth, length = v.thickness, s_front = v.front_scalar, s_back = v.back_scalar;
-            double stretch = 1;  // of a ray against its depth
+            const auto found = testing_support::segment_of(v, perspective);
             const ScreenTransform::Ray ray = transform.ray(v.position);
-            if (perspective) {
-                const double back = front - length;
-                length = length / (front * back);
-                s_front /= front;
-                s_back /= back;
-                front = 1 / front;
-                stretch = 1 / (transform.to_eye(ray.origin + ray.direction).z);
-            }
+            const double stretch = perspective ? 1 / transform.to_eye(ray.origin + ray.direction).z : 1;  // of a ray against its depth
             const Segment segment = cast(cell, ray);
             const auto scalar = [&](double t) { return 0.3 + glm::dot(slope, ray.origin + t * ray.direction); };
             // 1e-10: the rounding of pixels (3e-14) over the slope of faces seen up to a thousandth off edge-on.
-            ASSERT_NEAR(front, transform.to_eye(ray.origin + segment.enter * ray.direction).z, 1e-10);
-            ASSERT_NEAR(length * stretch, segment.leave - segment.enter, 1e-10);
-            ASSERT_NEAR(s_front, scalar(segment.enter), 1e-10);
-            ASSERT_NEAR(s_back, scalar(segment.leave), 1e-10);
+            ASSERT_NEAR(found.front, transform.to_eye(ray.origin + segment.enter * ray.direction).z, 1e-10);
+            ASSERT_NEAR((found.back - found.front) * stretch, segment.leave - segment.enter, 1e-10);
+            ASSERT_NEAR(found.s_front, scalar(segment.enter), 1e-10);
+            ASSERT_NEAR(found.s_back, scalar(segment.leave), 1e-10);
             ++checked;
         }
     }

@@ -158,21 +158,7 @@ TEST(CoherentOrder, SameForAnyNumberOfThreads) {
 
 // Sticks that lean on each other like the leaves of a camera's shutter have a cycle: labels would grow without end.
 TEST(CoherentOrder, GivesUpOnACycle) {
-    TetMesh mesh;
-    constexpr int sectors = 12;
-    for (int i = 0; i < sectors; ++i) {
-        const double angle = 2 * std::numbers::pi * i / sectors, ahead = angle + 0.9 * 2 * std::numbers::pi / sectors;
-        mesh.points.emplace_back(std::cos(angle), std::sin(angle), 0);
-        mesh.points.emplace_back(2 * std::cos(angle), 2 * std::sin(angle), 0);
-        mesh.points.emplace_back(1.5 * std::cos(ahead), 1.5 * std::sin(ahead), 0.5);
-    }
-    for (int i = 0; i < sectors; ++i) {
-        const auto a = static_cast<VertexId>(3 * i), b = static_cast<VertexId>(3 * ((i + 1) % sectors));
-        mesh.tets.push_back({a, a + 1, a + 2, b + 2});
-        mesh.tets.push_back({a, a + 1, b + 1, b + 2});
-        mesh.tets.push_back({a, b, b + 1, b + 2});
-    }
-    orient_cells(mesh);
+    const TetMesh mesh = testing_support::cyclic_ring(12);
     const CellGraph graph(mesh, build_adjacency(mesh));
     CoherentOrder order;
     EXPECT_FALSE(order.start(graph, Eye::towards({0, 0, 1})));

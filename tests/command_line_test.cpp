@@ -134,12 +134,8 @@ TEST_F(CommandLine, OpacityFromAnotherField) {
     ASSERT_EQ(run("render cube.vtk -o p.png --size 20x20 --field p").code, 0);
     const Outcome outcome = run("render cube.vtk -o two.png --size 20x20 --field p --opacity-field U");
     ASSERT_EQ(outcome.code, 0) << outcome.text;
-    const auto bytes = [&](const char* name) {
-        std::ifstream stream(path(name), std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(stream), {});
-    };
-    EXPECT_NE(bytes("two.png").substr(200), bytes("p.png").substr(200));
-    EXPECT_NE(bytes("two.png").find("cellproj opacity field"), std::string::npos);
+    EXPECT_NE(content("two.png").substr(200), content("p.png").substr(200));
+    EXPECT_NE(content("two.png").find("cellproj opacity field"), std::string::npos);
     EXPECT_EQ(run("render cube.vtk -o two.png --size 20x20 --field p --opacity-field rank --max-error .01").code, 0);
     expect_refused("render cube.vtk -o x.png --opacity-field q", {"\"q\"", "p"});
     expect_refused("render cube.vtk -o x.png --opacity-field U --method preint3d:32", {"--method", "preint3d:32", "integral"});
@@ -246,11 +242,7 @@ TEST_F(CommandLine, RenderDrawsWhatInfoSuggests) {
     EXPECT_NE(text.find("render 'my cube.vtk' -o picture.png --field p\n"), std::string::npos) << text;
     ASSERT_EQ(run("render 'my cube.vtk' -o a.png --size 20x20").code, 0);
     ASSERT_EQ(run("render 'my cube.vtk' -o b.png --size 20x20 --field p").code, 0);
-    const auto bytes = [&](const char* name) {
-        std::ifstream stream(path(name), std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(stream), {});
-    };
-    EXPECT_EQ(bytes("a.png"), bytes("b.png"));
+    EXPECT_EQ(content("a.png"), content("b.png"));
 }
 
 TEST_F(CommandLine, AMeshWithoutFieldsIsDrawnByACoordinate) {
@@ -372,8 +364,7 @@ TEST_F(CommandLine, ColorsAreChosenByName) {
     const auto picture = [&](const std::string& options) {
         const Outcome outcome = run("render cube.vtk -o a.png --size 20x20 " + options);
         EXPECT_EQ(outcome.code, 0) << outcome.text;
-        std::ifstream stream(path("a.png"), std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(stream), {});
+        return content("a.png");
     };
     const std::string plain = picture("");
     EXPECT_EQ(picture("--colors viridis --opacity-scale 1 --axis linear"), plain);
@@ -407,8 +398,7 @@ TEST_F(CommandLine, ABlankPictureIsNotSilent) {
 TEST_F(CommandLine, PicturesThatCannotBeWrittenLeaveTheOldOne) {
     write("a.png", "old");
     expect_refused("render missing.vtu -o a.png", {"missing.vtu"});
-    std::ifstream stream(path("a.png"));
-    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "old");
+    EXPECT_EQ(content("a.png"), "old");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "mesh/tetrahedralize.hpp"
 #include "tests/damage_samples.hpp"
 #include "tests/read_fixtures.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace cellproj {
 namespace {
@@ -141,11 +142,6 @@ void try_damaged(const DamageSample& sample, const fs::path& entry, const std::s
     if (seconds > longest_read) findings.complain(about, "took " + std::to_string(seconds) + " s");
 }
 
-std::string bytes_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
-}
-
 void set_bytes(const fs::path& file, std::string_view bytes) {
     std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
@@ -154,7 +150,7 @@ void try_cuts(const DamageSample& sample, const fs::path& entry, const Content& 
     constexpr std::size_t cuts = 20;
     for (const std::string& name : sample.files) {
         const fs::path file = entry.parent_path() / name;
-        const std::string bytes = bytes_of(file);
+        const std::string bytes = testing_support::bytes_of(file);
         for (std::size_t cut = 0; cut < cuts; ++cut) {
             const std::size_t size = bytes.size() * cut / cuts;
             set_bytes(file, std::string_view(bytes).substr(0, size));
@@ -174,7 +170,7 @@ void try_flips(const DamageSample& sample, const fs::path& entry, const Content&
     for (std::size_t flip = 0; flip < flips; flip += sample.flips_at_once) {
         const std::string& name = sample.files[flip / sample.flips_at_once % sample.files.size()];
         const fs::path file = entry.parent_path() / name;
-        const std::string bytes = bytes_of(file);
+        const std::string bytes = testing_support::bytes_of(file);
         std::string damaged = bytes;
         std::string about = name + " with byte";
         for (std::size_t n = 0; n < sample.flips_at_once; ++n) {

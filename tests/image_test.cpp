@@ -93,12 +93,6 @@ PngOptions with_background(const glm::dvec3& background) {
     return options;
 }
 
-std::string content(const fs::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    return text.str();
-}
-
 // A one-pixel picture's sample values.
 std::vector<unsigned> written_pixel(const fs::path& file, const glm::vec4& pixel, const PngOptions& options) {
     Image image(1, 1);
@@ -330,7 +324,7 @@ TEST_F(ImageFile, ADiskThatFillsUpIsAnErrorAndTheOlderFileStays) {
         EXPECT_EQ(error.kind(), ErrorKind::file) << name;
         EXPECT_EQ(error.place(), file.string());
         EXPECT_NE(error.found().find("File too large"), std::string::npos) << error.what();
-        EXPECT_EQ(content(file), "older") << name;
+        EXPECT_EQ(testing_support::bytes_of(file), "older") << name;
     }
     EXPECT_EQ(names(), (Names{"a.exr", "a.json", "a.png", "b.json"})) << "nothing else is left behind";
 }
@@ -384,7 +378,7 @@ TEST_F(ImageFile, AWriteProtectedFileOrFolderIsRespected) {
     fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_EQ(error_of([&] { require_writable_image(folder_ / "b.png"); }).found(), "Permission denied");
     fs::permissions(folder_, fs::perms::owner_all);
-    EXPECT_EQ(content(folder_ / "a.png"), "older");
+    EXPECT_EQ(testing_support::bytes_of(folder_ / "a.png"), "older");
 }
 
 TEST_F(ImageFile, OnlyPngAndExrAreSuffixesOfPictures) {
@@ -402,7 +396,7 @@ TEST_F(ImageFile, OnlyPngAndExrAreSuffixesOfPictures) {
 TEST_F(ImageFile, AskingLeavesAnOlderFileAlone) {
     std::ofstream(folder_ / "a.png") << "older";
     require_writable_image(folder_ / "a.png");
-    EXPECT_EQ(content(folder_ / "a.png"), "older");
+    EXPECT_EQ(testing_support::bytes_of(folder_ / "a.png"), "older");
     EXPECT_EQ(names(), Names{"a.png"});
 }
 
@@ -418,7 +412,7 @@ TEST_F(ImageFile, SymbolicLinksAreFollowed) {
     fs::create_symlink(fs::path("real") / "a.json", folder_ / "link.json");
     write_text_file(folder_ / "link.json", "newer");
     EXPECT_TRUE(fs::is_symlink(folder_ / "link.json"));
-    EXPECT_EQ(content(folder_ / "real" / "a.json"), "newer");
+    EXPECT_EQ(testing_support::bytes_of(folder_ / "real" / "a.json"), "newer");
 }
 
 TEST_F(ImageFile, StandardOutputIsWrittenInTurnIntoAFile) {
@@ -431,7 +425,7 @@ TEST_F(ImageFile, StandardOutputIsWrittenInTurnIntoAFile) {
         std::printf("after\n");
     }
     close(descriptor);
-    EXPECT_EQ(content(folder_ / "log"), "before\ntext\nafter\n");
+    EXPECT_EQ(testing_support::bytes_of(folder_ / "log"), "before\ntext\nafter\n");
     EXPECT_EQ(names(), Names{"log"});
 }
 
@@ -466,9 +460,9 @@ TEST_F(ImageFile, APipeWithANameStaysAPipe) {
 TEST_F(ImageFile, TextsAreWrittenAsTheyAre) {
     const std::string text("{\n\"τ\": 1\r\n}\0end", 17);
     write_text_file(folder_ / "a.json", text);
-    EXPECT_EQ(content(folder_ / "a.json"), text);
+    EXPECT_EQ(testing_support::bytes_of(folder_ / "a.json"), text);
     write_text_file(folder_ / "a.json", "");
-    EXPECT_EQ(content(folder_ / "a.json"), "");
+    EXPECT_EQ(testing_support::bytes_of(folder_ / "a.json"), "");
 }
 
 TEST_F(ImageFile, AnOutputThatIsNotCommittedNeverAppears) {

@@ -16,6 +16,7 @@
 #include "mesh/error.hpp"
 #include "mesh/tetrahedralize.hpp"
 #include "tests/read_fixtures.hpp"
+#include "tests/support/folder_test.hpp"
 
 namespace cellproj {
 namespace {
@@ -277,11 +278,6 @@ TEST(Read, LeavesVtksMessagesAsTheyWere) {
 
 // ---- Files that others wrote ----
 
-inline std::string content_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 TEST_F(ReadSharedData, InlineAndCompressedAppendedVtuAgree) {
     const Dataset inlined = read(data / "aneurysm_tets_openfoam/aneurysm_tets_internal.vtu");
     const Dataset appended = read(data / "aneurysm_tets_openfoam/aneurysm_tets_lz4_appended_raw.vtu");
@@ -293,7 +289,7 @@ TEST_F(ReadSharedData, InlineAndCompressedAppendedVtuAgree) {
 }
 
 TEST_F(ReadSharedData, ATruncatedAppendedVtu) {
-    const std::string whole = content_of(data / "can_hex/can.vtu");
+    const std::string whole = testing_support::bytes_of(data / "can_hex/can.vtu");
     ASSERT_EQ(read(data / "can_hex/can.vtu").cells.size(), 4800U);
     for (const double share : {0.001, 0.01, 0.3, 0.9, 0.99999}) {
         const auto size = static_cast<std::size_t>(share * static_cast<double>(whole.size()));

@@ -62,6 +62,14 @@ testing_support::Segment segment_at(const Silhouette& silhouette, std::size_t tr
     return {1 / segment.front, 1 / segment.back, segment.s_front / segment.front, segment.s_back / segment.back};
 }
 
+// 1e-9: rounding of 1e-16 times the condition of cells down to a thousandth of their box, and of faces seen under as little.
+void expect_same(const testing_support::Segment& found, const testing_support::Segment& expected, double stretch) {
+    ASSERT_NEAR(found.front, expected.front, 1e-9 * stretch);
+    ASSERT_NEAR(found.back, expected.back, 1e-9 * stretch);
+    ASSERT_NEAR(found.s_front, expected.s_front, 1e-8);
+    ASSERT_NEAR(found.s_back, expected.s_back, 1e-8);
+}
+
 class SilhouetteAgainstRays : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(ParallelAndPerspective, SilhouetteAgainstRays, testing::Bool());
 
@@ -80,12 +88,7 @@ TEST_P(SilhouetteAgainstRays, TheSmallestRidgeTellsTheSegmentOfTheRay) {
             const auto segment = cast(points, s, place.position, perspective);
             ASSERT_TRUE(segment) << "trial " << trial;
             const auto found = segment_at(silhouette, t, place, perspective);
-            // 1e-9: rounding of 1e-16 times the condition of cells down to a thousandth of their box, and of faces seen under
-            // as little.
-            ASSERT_NEAR(found.front, segment->front, 1e-9 * stretch) << "trial " << trial;
-            ASSERT_NEAR(found.back, segment->back, 1e-9 * stretch) << "trial " << trial;
-            ASSERT_NEAR(found.s_front, segment->s_front, 1e-8) << "trial " << trial;
-            ASSERT_NEAR(found.s_back, segment->s_back, 1e-8) << "trial " << trial;
+            ASSERT_NO_FATAL_FAILURE(expect_same(found, *segment, stretch)) << "trial " << trial;
             ++checked;
         }
     }
@@ -129,10 +132,7 @@ TEST_P(SilhouetteAgainstRays, MovedCornersKeepDepthsAndScalars) {
             const auto segment = cast(points, s, place.position, perspective);
             ASSERT_TRUE(segment) << "trial " << trial;
             const auto found = segment_at(silhouette, t, place, perspective);
-            ASSERT_NEAR(found.front, segment->front, 1e-9 * stretch) << "trial " << trial;
-            ASSERT_NEAR(found.back, segment->back, 1e-9 * stretch) << "trial " << trial;
-            ASSERT_NEAR(found.s_front, segment->s_front, 1e-8) << "trial " << trial;
-            ASSERT_NEAR(found.s_back, segment->s_back, 1e-8) << "trial " << trial;
+            ASSERT_NO_FATAL_FAILURE(expect_same(found, *segment, stretch)) << "trial " << trial;
             ++checked;
         }
     }

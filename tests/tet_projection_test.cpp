@@ -174,19 +174,12 @@ TEST_P(AgainstRays, InterpolatedTermsAreTheSegmentOfTheRay) {
             }
             const auto segment = cast(points, s, v.position, perspective);
             ASSERT_TRUE(segment) << "trial " << trial;
-            double front = v.front_depth, length = v.thickness, s_front = v.front_scalar, s_back = v.back_scalar;
-            if (perspective) {
-                const double back = front - length;
-                length = length / (front * back);
-                s_front /= front;
-                s_back /= back;
-                front = 1 / front;
-            }
+            const auto found = testing_support::segment_of(v, perspective);
             // 1e-9: rounding of 1e-16 times the condition of cells down to a thousandth of their box.
-            ASSERT_NEAR(front, segment->front, 1e-9 * stretch) << "trial " << trial;
-            ASSERT_NEAR(length, segment->back - segment->front, 1e-9 * stretch) << "trial " << trial;
-            ASSERT_NEAR(s_front, segment->s_front, 1e-9) << "trial " << trial;
-            ASSERT_NEAR(s_back, segment->s_back, 1e-9) << "trial " << trial;
+            ASSERT_NEAR(found.front, segment->front, 1e-9 * stretch) << "trial " << trial;
+            ASSERT_NEAR(found.back - found.front, segment->back - segment->front, 1e-9 * stretch) << "trial " << trial;
+            ASSERT_NEAR(found.s_front, segment->s_front, 1e-9) << "trial " << trial;
+            ASSERT_NEAR(found.s_back, segment->s_back, 1e-9) << "trial " << trial;
             ++checked;
         }
     }

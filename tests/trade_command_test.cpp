@@ -36,11 +36,6 @@ protected:
         return run_program(folder_, command + " v.raw --dims 3 3 3 --type uint8 --size 40x40 " + options);
     }
 
-    std::string read(const std::string& name) const {
-        std::ifstream stream(folder_ / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
-
     std::vector<std::string> files() const {
         std::vector<std::string> names;
         for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
@@ -72,13 +67,13 @@ TEST_F(TradeCommand, WritesTheSameTableFourTimes) {
     ASSERT_EQ(outcome.code, 0) << outcome.text;
     EXPECT_EQ(files(), (std::vector<std::string>{"t.csv", "t.html", "t.json", "v.raw"}));
 
-    const auto json = nlohmann::json::parse(read("t.json"));
+    const auto json = nlohmann::json::parse(content("t.json"));
     const auto& rows = json.at("methods");
     ASSERT_EQ(rows.size(), 6U);
     EXPECT_EQ(json.at("rounds"), 2);
     EXPECT_EQ(json.at("whole_picture"), true);
     EXPECT_GT(json.at("judged_pixels"), 100);
-    std::istringstream csv(read("t.csv"));
+    std::istringstream csv(content("t.csv"));
     std::string line;
     std::getline(csv, line);
     EXPECT_EQ(line, "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front");
@@ -95,7 +90,7 @@ TEST_F(TradeCommand, WritesTheSameTableFourTimes) {
         front += row.at("on_front").get<bool>() ? 1 : 0;
         const std::string label = method + (target == "rgba8" ? ", rgba8" : "");
         EXPECT_NE(outcome.text.find(label), std::string::npos);
-        EXPECT_NE(read("t.html").find("<td>" + label + "<td>"), std::string::npos) << label;
+        EXPECT_NE(content("t.html").find("<td>" + label + "<td>"), std::string::npos) << label;
     }
     EXPECT_FALSE(std::getline(csv, line)) << line;
     EXPECT_GE(front, 1U);
@@ -104,7 +99,7 @@ TEST_F(TradeCommand, WritesTheSameTableFourTimes) {
 
 TEST_F(TradeCommand, ThePageHoldsAllItShows) {
     ASSERT_EQ(run("trade", "--method average --method integral --rounds 1 -o t.html").code, 0);
-    const std::string page = read("t.html");
+    const std::string page = content("t.html");
     EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0U);
     EXPECT_NE(page.find("</html>"), std::string::npos);
     EXPECT_EQ(count(page, "data:image/png;base64,"), 6U);  // the legend, the truth, and two for each method
@@ -116,11 +111,11 @@ TEST_F(TradeCommand, ThePageHoldsAllItShows) {
 
 TEST_F(TradeCommand, DrawsByTheBackendThatIsAskedFor) {
     ASSERT_EQ(run("trade", "--backend gl --method average --method integral --rounds 1 --json t.json").code, 0);
-    const auto by_gl = nlohmann::json::parse(read("t.json"));
+    const auto by_gl = nlohmann::json::parse(content("t.json"));
     for (const auto& row : by_gl.at("methods")) EXPECT_EQ(row.at("backend"), "gl_osmesa");
     const Outcome all = run("trade", "--backend cpu --rounds 1 --json t.json");  // of all methods, those that it draws
     ASSERT_EQ(all.code, 0) << all.text;
-    const auto json = nlohmann::json::parse(read("t.json"));
+    const auto json = nlohmann::json::parse(content("t.json"));
     EXPECT_GT(json.at("methods").size(), 10U);
     for (const auto& row : json.at("methods")) EXPECT_EQ(row.at("backend"), "cpu");
     expect_refused(1, "trade", "--backend cpu --method shirley-tuchman --json u.json", {"--method", "--backend gl"});
@@ -129,7 +124,7 @@ TEST_F(TradeCommand, DrawsByTheBackendThatIsAskedFor) {
 
 TEST_F(TradeCommand, JudgesAsManyPixelsAsAskedFor) {
     ASSERT_EQ(run("trade", "--method average --rounds 1 --sample 50 --json t.json").code, 0);
-    const auto json = nlohmann::json::parse(read("t.json"));
+    const auto json = nlohmann::json::parse(content("t.json"));
     EXPECT_EQ(json.at("judged_pixels"), 50);
     EXPECT_EQ(json.at("whole_picture"), false);
 }
@@ -148,7 +143,7 @@ TEST_F(TradeCommand, RefusesBadArgumentsAndLeavesNothing) {
     expect_refused(1, "trade", "--camera two.json -o t.html", {"--camera", "one camera", "2"});
     write("old.csv", "old");
     expect_refused(1, "trade", "--camera two.json --csv old.csv", {"--camera"});
-    EXPECT_EQ(read("old.csv"), "old");
+    EXPECT_EQ(content("old.csv"), "old");
 }
 
 TEST_F(TradeCommand, MaxErrorPrintsWhatItMeasuredAndTellsTheStatistics) {
@@ -156,7 +151,7 @@ TEST_F(TradeCommand, MaxErrorPrintsWhatItMeasuredAndTellsTheStatistics) {
     ASSERT_EQ(outcome.code, 0) << outcome.text;
     for (const char* words : {"--max-error 0.01", "of the first view", "integral", "exact:0.0001", "  the fastest within it"})
         EXPECT_NE(outcome.text.find(words), std::string::npos) << "no " << words << " in:\n" << outcome.text;
-    const auto pictures = nlohmann::json::parse(read("s.json")).at("pictures");
+    const auto pictures = nlohmann::json::parse(content("s.json")).at("pictures");
     EXPECT_LE(pictures.at(0).at("error"), 0.01);
     EXPECT_TRUE(pictures.at(1).at("error").is_null());  // not measured there
     const std::string method = pictures.at(0).at("method");
@@ -172,7 +167,7 @@ TEST_F(TradeCommand, MaxErrorSaysWhenNoMethodKeepsIt) {
     EXPECT_EQ(outcome.code, 0) << outcome.text;
     for (const char* words : {"warning: no method was within --max-error 1e-05", "exact:1e-07", "taken, though above it"})
         EXPECT_NE(outcome.text.find(words), std::string::npos) << "no " << words << " in:\n" << outcome.text;
-    const auto picture = nlohmann::json::parse(read("s.json")).at("pictures").at(0);
+    const auto picture = nlohmann::json::parse(content("s.json")).at("pictures").at(0);
     EXPECT_EQ(picture.at("method"), "exact:1e-07");
     EXPECT_GT(picture.at("error"), 1e-5);
 }

@@ -189,30 +189,8 @@ TEST(VisibilitySorter, SameOrderForAnyNumberOfThreads) {
     EXPECT_EQ(one, with_threads(4));
 }
 
-// Sectors around the z axis whose common faces all lean the same way: seen from above, each lies partly over the next one.
-TetMesh cyclic_ring(int sectors) {
-    TetMesh mesh;
-    const auto at = [](double angle, double radius, double z) {
-        return glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), z);
-    };
-    for (int i = 0; i < sectors; ++i) {  // a triangle per common face: two points below, one above and ahead
-        const double angle = 2 * std::numbers::pi * i / sectors;
-        mesh.points.push_back(at(angle, 1, 0));
-        mesh.points.push_back(at(angle, 2, 0));
-        mesh.points.push_back(at(angle + 0.9 * 2 * std::numbers::pi / sectors, 1.5, 0.5));
-    }
-    for (int i = 0; i < sectors; ++i) {
-        const auto a = static_cast<VertexId>(3 * i), b = static_cast<VertexId>(3 * ((i + 1) % sectors));
-        mesh.tets.push_back({a, a + 1, a + 2, b + 2});
-        mesh.tets.push_back({a, a + 1, b + 1, b + 2});
-        mesh.tets.push_back({a, b, b + 1, b + 2});
-    }
-    orient_cells(mesh);
-    return mesh;
-}
-
 TEST(VisibilitySorter, ACycleIsLeftByDepthAndCounted) {
-    const TetMesh mesh = cyclic_ring(12);
+    const TetMesh mesh = testing_support::cyclic_ring(12);
     const Eye above = Eye::towards({0, 0, 1});
     VisibilitySorter sorter(mesh);
     OrderReport report;

@@ -10,9 +10,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 
 namespace cellproj::testing_support {
+
+inline std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
 
 // The folder is empty at the start of each case and gone behind it.
 class FolderTest : public testing::Test {
@@ -30,6 +36,8 @@ protected:
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
         return folder_ / name;
     }
+
+    std::string content(const std::string& name) const { return bytes_of(folder_ / name); }
 
     std::filesystem::path folder_;
 };

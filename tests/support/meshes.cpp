@@ -2,6 +2,8 @@
 #include "tests/support/meshes.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -81,6 +83,27 @@ ScalarField point_field(const TetMesh& mesh, const std::function<double(const gl
     ScalarField field{"f", FieldLocation::points, {}};
     for (const glm::dvec3& p : mesh.points) field.values.push_back(f(p));
     return field;
+}
+
+TetMesh cyclic_ring(int sectors) {
+    TetMesh mesh;
+    const auto at = [](double angle, double radius, double z) {
+        return glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), z);
+    };
+    for (int i = 0; i < sectors; ++i) {  // a triangle per common face: two points below, one above and ahead
+        const double angle = 2 * std::numbers::pi * i / sectors;
+        mesh.points.push_back(at(angle, 1, 0));
+        mesh.points.push_back(at(angle, 2, 0));
+        mesh.points.push_back(at(angle + 0.9 * 2 * std::numbers::pi / sectors, 1.5, 0.5));
+    }
+    for (int i = 0; i < sectors; ++i) {
+        const auto a = static_cast<VertexId>(3 * i), b = static_cast<VertexId>(3 * ((i + 1) % sectors));
+        mesh.tets.push_back({a, a + 1, a + 2, b + 2});
+        mesh.tets.push_back({a, a + 1, b + 1, b + 2});
+        mesh.tets.push_back({a, b, b + 1, b + 2});
+    }
+    orient_cells(mesh);
+    return mesh;
 }
 
 }  // namespace cellproj::testing_support

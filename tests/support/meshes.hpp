@@ -41,4 +41,7 @@ double total_volume(const TetMesh& mesh);
 // f at every point.
 ScalarField point_field(const TetMesh& mesh, const std::function<double(const glm::dvec3&)>& f);
 
+// Sectors around the z axis whose common faces all lean the same way: seen from above, each lies partly over the next one.
+TetMesh cyclic_ring(int sectors);
+
 }  // namespace cellproj::testing_support

@@ -79,6 +79,13 @@ struct Segment {
     double front, back, s_front, s_back;  // depths along the ray's z, scalars
 };
 
+// What the affine terms of a vertex on the screen say of its ray.
+inline Segment segment_of(const ProjectedVertex& v, bool perspective) {
+    if (!perspective) return {v.front_depth, v.front_depth + v.thickness, v.front_scalar, v.back_scalar};
+    const double back = v.front_depth - v.thickness;
+    return {1 / v.front_depth, 1 / back, v.front_scalar / v.front_depth, v.back_scalar / back};
+}
+
 // The ray through (x, y) at depth 1 (perspective) or along z (parallel) against the four planes, in float64.
 inline std::optional<Segment> cast(const Points& points, const std::array<double, 4>& s, const glm::dvec2& at, bool perspective) {
     const glm::dvec3 origin = perspective ? glm::dvec3(0) : glm::dvec3(at, 0);
