@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <glm/common.hpp>
@@ -52,7 +52,7 @@ std::optional<glm::dvec3> gradient_in(const TetMesh& mesh, const ScalarField& fi
         s[static_cast<std::size_t>(corner)] = field.at(mesh, cell, corner);
     const std::array<double, 3> rise{s[1] - s[0], s[2] - s[0], s[3] - s[0]};
     const double highest = std::max({std::abs(rise[0]), std::abs(rise[1]), std::abs(rise[2])});
-    if (!std::isfinite(rise[0] + rise[1] + rise[2]) || !std::isfinite(highest)) return std::nullopt;
+    if (std::ranges::any_of(rise, [](double r) { return !std::isfinite(r); })) return std::nullopt;
     const Shape shape(mesh, cell);
     if (shape.is_flat()) return std::nullopt;
     if (highest == 0) return glm::dvec3(0);
@@ -63,57 +63,50 @@ std::optional<glm::dvec3> gradient_in(const TetMesh& mesh, const ScalarField& fi
     return std::isfinite(largest(g)) ? std::optional(g) : std::nullopt;
 }
 
-bool has_finite_scalars(const TetMesh& mesh, const ScalarField& field, CellId cell) {
-    for (int corner = 0; corner < 4; ++corner) {
-        if (!std::isfinite(field.at(mesh, cell, corner))) return false;
-    }
-    return true;
+// One for each cell, NaN where there is none.
+std::vector<glm::dvec3> gradients_or_nan(const TetMesh& mesh, const ScalarField& field) {
+    assert(field.values.size() == (field.location == FieldLocation::points ? mesh.points.size() : mesh.tets.size()));
+    std::vector<glm::dvec3> gradients(mesh.tets.size());
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    oneapi::tbb::parallel_for(Range(0, mesh.tets.size(), 4096), [&](const Range& range) {
+        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        for (std::size_t cell = range.begin(); cell != range.end(); ++cell)
+            gradients[cell] = gradient_in(mesh, field, static_cast<CellId>(cell)).value_or(glm::dvec3(nan));
+    });
+    return gradients;
 }
 
 }  // namespace
 
 Gradients cell_gradients(const TetMesh& mesh, const ScalarField& field) {
-    assert(field.values.size() == (field.location == FieldLocation::points ? mesh.points.size() : mesh.tets.size()));
-    Gradients gradients{std::vector<glm::dvec3>(mesh.tets.size(), glm::dvec3(0)), 0};
-    std::atomic<std::size_t> undefined = 0;
-    using Range = oneapi::tbb::blocked_range<std::size_t>;
-    oneapi::tbb::parallel_for(Range(0, mesh.tets.size(), 4096), [&](const Range& range) {
-        std::size_t here = 0;
-        for (std::size_t cell = range.begin(); cell != range.end(); ++cell) {
-            const auto gradient = gradient_in(mesh, field, static_cast<CellId>(cell));
-            if (gradient) gradients.values[cell] = *gradient;
-            here += !gradient;
-        }
-        undefined += here;
-    });
-    gradients.undefined = undefined;
+    Gradients gradients{gradients_or_nan(mesh, field), 0};
+    for (glm::dvec3& gradient : gradients.values) {
+        if (!std::isnan(gradient.x)) continue;
+        gradient = glm::dvec3(0);
+        ++gradients.undefined;
+    }
     return gradients;
 }
 
-Gradients vertex_gradients(const TetMesh& mesh, const ScalarField& field, const Gradients& cells) {
-    assert(cells.values.size() == mesh.tets.size());
+Gradients vertex_gradients(const TetMesh& mesh, const ScalarField& field) {
+    const std::vector<glm::dvec3> of_cells = gradients_or_nan(mesh, field);
     const double extent = bounds(mesh.points).diagonal();
     const double unit = extent > 0 ? extent : 1.0;
     Gradients gradients{std::vector<glm::dvec3>(mesh.points.size(), glm::dvec3(0)), 0};
     std::vector<double> weights(mesh.points.size(), 0.0);
     for (std::size_t cell = 0; cell < mesh.tets.size(); ++cell) {
-        const auto id = static_cast<CellId>(cell);
-        const Shape shape(mesh, id);
-        if (shape.is_flat() || !has_finite_scalars(mesh, field, id)) continue;
+        if (std::isnan(of_cells[cell].x)) continue;
+        const Shape shape(mesh, static_cast<CellId>(cell));
         const double volume = std::abs(shape.det) * std::pow(shape.size / unit, 3);
         if (!(volume > 0)) continue;
         for (const VertexId v : mesh.tets[cell]) {
             // A running mean: its values stay among those of the cells, whatever their size.
             weights[v] += volume;
-            gradients.values[v] = glm::mix(gradients.values[v], cells.values[cell], volume / weights[v]);
+            gradients.values[v] = glm::mix(gradients.values[v], of_cells[cell], volume / weights[v]);
         }
     }
     gradients.undefined = static_cast<std::size_t>(std::count(weights.begin(), weights.end(), 0.0));
     return gradients;
-}
-
-Gradients vertex_gradients(const TetMesh& mesh, const ScalarField& field) {
-    return vertex_gradients(mesh, field, cell_gradients(mesh, field));
 }
 
 }  // namespace cellproj

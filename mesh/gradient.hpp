@@ -28,8 +28,7 @@ struct Gradients {
 Gradients cell_gradients(const TetMesh& mesh, const ScalarField& field);
 
 // One for each point: the mean of the gradients of the cells around it, weighted by their volumes; cells without a gradient
-// do not count. `cells`: of the same mesh and field. Undefined: points around which no cell has one.
-Gradients vertex_gradients(const TetMesh& mesh, const ScalarField& field, const Gradients& cells);
+// do not count. Undefined: points around which no cell has one.
 Gradients vertex_gradients(const TetMesh& mesh, const ScalarField& field);
 
 }  // namespace cellproj

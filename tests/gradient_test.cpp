@@ -124,6 +124,7 @@ TEST(Gradient, LeavesOutWhatIsNotFinite) {
         p *= 1e-20;
     const ScalarField high{"s", FieldLocation::points, {0, 1e300, 0, 0}};
     EXPECT_EQ(cell_gradients(steep, high).undefined, 1U);
+    EXPECT_EQ(vertex_gradients(steep, high).undefined, 4U);
 }
 
 TEST(Gradient, OfAFieldOnCellsIsZeroInEach) {
