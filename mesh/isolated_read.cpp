@@ -304,7 +304,7 @@ struct Outcome {
     bool stands_still = false;    // it did nothing at all for a while, and did not end
 };
 
-// Tells a child that waits for a lock for ever: readers start no threads, so nothing can wake it.
+// Tells a child that may wait for a lock for ever. One that waits for slow storage looks the same.
 class StandstillWatch {
 public:
     explicit StandstillWatch(const Child& child) : child_(child) {}
@@ -328,8 +328,8 @@ private:
     std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now(), since_ = next_;
 };
 
-// Passes the child's percents on until it ends.
-Outcome follow(Child& child, const Descriptor& events, double seconds, const ProgressCallback& progress) {
+// Passes the child's percents on until it ends, its time is over or, where it can be tried again, it stands still.
+Outcome follow(Child& child, const Descriptor& events, double seconds, const ProgressCallback& progress, bool can_try_again) {
     const auto start = std::chrono::steady_clock::now();
     Outcome outcome;
     const auto receive = [&] {
@@ -343,7 +343,7 @@ Outcome follow(Child& child, const Descriptor& events, double seconds, const Pro
     bool open = true;
     StandstillWatch watch(child);
     while (!(outcome.status = child.status_if_ended())) {
-        if ((outcome.stands_still = watch.stands_still())) return outcome;
+        if (can_try_again && (outcome.stands_still = watch.stands_still())) return outcome;
         if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds) return outcome;
         // The end of the pipe tells of the child's end at once; only a child of another thread's read, forked while
         // this pipe was open, can keep it open, so it is not waited for.
@@ -395,8 +395,8 @@ void run_isolated(const std::filesystem::path& file, std::uintmax_t bytes, const
         if (pid == 0) run_child(channels, limits, file, work);
         Child child(pid);
         channels.events_out.close();  // or the end of the child's would not be seen
-        const Outcome outcome = follow(child, channels.events, limits.seconds, progress);
-        if (outcome.stands_still && attempt < tries) continue;  // forked at a bad moment: some lock was held
+        const Outcome outcome = follow(child, channels.events, limits.seconds, progress, attempt < tries);
+        if (outcome.stands_still) continue;  // forked at a bad moment: some lock was held
         const bool ended_well = outcome.status && WIFEXITED(*outcome.status) && WEXITSTATUS(*outcome.status) == 0;
         if (!ended_well || (outcome.event != result_ready && outcome.event != error_ready))
             throw_failure(file, outcome, start_of(channels.printed));

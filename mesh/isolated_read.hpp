@@ -14,7 +14,7 @@
 // What fork means for a caller of several threads: the child has only the thread that called; locks that another thread
 // held at that moment stay locked in it. malloc and stdio take care of themselves. VTK's own locks are taken by no other
 // thread unless the caller uses VTK elsewhere at the same time. A child that stands still for 3 s, as one that meets a
-// lock held there, is ended and the read tried once more. The child starts no threads: VTK's are switched off in it.
+// lock held there, is ended and the read tried once more, with all of its time. The child starts no threads: VTK's are switched off in it.
 #pragma once
 
 #include <cstdint>
