@@ -105,6 +105,7 @@ private:
     std::optional<PreparedScene> prepared_;
     Method method_;
     std::optional<Classification> classification_;  // of method_, for the prepared scene
+    bool classified_ = false;                       // and for its transfer function
     ScreenMesh mesh_;
     TileBins bins_;
     std::vector<std::uint8_t> extra_drawn_;
@@ -124,18 +125,21 @@ void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
         mesh_.set_visible();
     }
     const bool same_method = classification_ && method_ == quality.method;
-    if (same_transfer && same_method) return;
+    if (same_transfer && same_method && classified_) return;
+    classified_ = false;  // until all of it is done: no stale table behind a failure
 
     const SceneUnits& units = prepared_->units();
     const TransferFunction transfer = in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
     if (same_method) {
         classification_->set_transfer(transfer);
+        classified_ = true;
         return;
     }
     // A walk over all cells, which one method alone wants to know of.
     const double mean_length = quality.method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
     classification_.emplace(quality.method, transfer, mean_length);
     method_ = quality.method;
+    classified_ = true;
 }
 
 Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out) {

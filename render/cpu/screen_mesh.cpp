@@ -9,7 +9,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "mesh/error.hpp"
 #include "render/scene_view.hpp"
 
 namespace cellproj::cpu {
@@ -33,6 +32,7 @@ void ScreenMesh::set_scene(const PreparedScene& prepared) {
         const auto scalar = static_cast<float>(std::clamp(units.normalized(field.values[i]), 0.0, 1.0));
         (per_point ? points_[i].scalar : cell_scalars_[i]) = scalar;
     }
+    middle_ = bounds(mesh.points).center();
     cells_ = {};
     cells_.tets = mesh.tets;
     set_visible();
@@ -52,8 +52,7 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
     near_depth_ = near_plane_depth(camera, unit);
 
     // Half the diagonal is the unit: the mesh lies within 1 of its middle.
-    const Bounds box = bounds(mesh.points);
-    const double middle = transform_.to_eye((box.center() - eye_) / unit).z;
+    const double middle = transform_.to_eye((middle_ - eye_) / unit).z;
     base_ = transform_.perspective() ? 1.0 / std::max(middle + 1.0, near_depth_) : middle;
     View& view = cells_.view;
     view.width = size.width;

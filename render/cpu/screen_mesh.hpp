@@ -40,8 +40,6 @@ public:
     const ScreenCells& cells() const { return cells_; }
     // The cells that the extra tetrahedra are parts of.
     std::span<const CellId> extra_cells() const { return extra_cells_; }
-    // Camera in scene units, about the eye.
-    const ScreenTransform& transform() const { return transform_; }
 
 private:
     using Corners = std::array<EyeVertex, 4>;
@@ -54,7 +52,7 @@ private:
     std::size_t add_front_part(const Corners& corners, CellId cell);
 
     const PreparedScene* prepared_ = nullptr;
-    glm::dvec3 eye_{0.0};
+    glm::dvec3 eye_{0.0}, middle_{0.0};  // of the mesh's box
     ScreenTransform transform_{Camera{}, ImageSize{}};
     double near_depth_ = 0, base_ = 0;   // scene units; 1/depth or depth of nearness 0
     bool near_points_ = false;           // some point lies behind the near plane
