@@ -170,10 +170,4 @@ std::string to_string(const Method& method) {
     return text;
 }
 
-void require_takes_opacity_field(const Method& method, const std::string& place) {
-    if (takes_opacity_field(method)) return;
-    throw Error({ErrorKind::option, place, "one that takes opacity from another field than colour", to_string(method),
-                 "use integral, exact, linear:N, homogeneous, stein or average"});
-}
-
 }  // namespace cellproj

@@ -61,8 +61,6 @@ inline bool takes_opacity_field(const Method& method) {
                        method.kind == MethodKind::preint3d;
     return !table && !light_at_vertices(method);
 }
-// Throws Error (option), naming `place`, unless it can.
-void require_takes_opacity_field(const Method& method, const std::string& place = "method");
 
 // From "NAME" or "NAME:PART:PART…", parts in any order: "integral", "preint3d:128:linear:uint8", "linear:8:vertices",
 // "average:half", "exact:1e-6". What is not said has its default. Throws Error (option), naming `place`, for an unknown

@@ -1,37 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/renderer.hpp"
 
+#include <optional>
+
 #include "mesh/error.hpp"
 #include "render/cpu/cpu_renderer.hpp"
 #include "render/gl/gl_renderer.hpp"
 
 namespace cellproj {
 
-bool draws(Backend backend, const Quality& quality, FieldsRead fields) {
-    const bool one_field = fields == FieldsRead::one;
-    if (backend == Backend::gl_osmesa) return !quality.order_per_pixel && (one_field || takes_opacity_field(quality.method));
-    return one_field && !light_at_vertices(quality.method) && quality.target == TargetFormat::rgba32f;
-}
+namespace {
 
-void require_drawn(Backend backend, const Quality& quality, FieldsRead fields) {
-    if (draws(backend, quality, fields)) return;
+// Why a backend cannot draw so; nothing when it can.
+std::optional<Error> refusal(Backend backend, const Quality& quality, FieldsRead fields) {
+    const auto instead = [](const char* option, const char* expected, const std::string& found, const char* advice) {
+        return Error({ErrorKind::option, option, expected, found, advice});
+    };
+    const char* use_gl = "use the OpenGL backend (--backend gl)";
     if (fields == FieldsRead::two) {
-        require_takes_opacity_field(quality.method, "--method");
-        if (backend == Backend::cpu) {
-            throw Error({ErrorKind::option, "--opacity-field", "colour and opacity from one field for the CPU backend", "another field",
-                         "use the OpenGL backend (--backend gl)"});
-        }
+        if (!takes_opacity_field(quality.method))
+            return instead("--method", "one that takes opacity from another field than colour", to_string(quality.method),
+                           "use integral, exact, linear:N, homogeneous, stein or average");
+        if (backend == Backend::cpu)
+            return instead("--opacity-field", "colour and opacity from one field for the CPU backend", "another field", use_gl);
     }
     if (backend == Backend::gl_osmesa) {
-        throw Error({ErrorKind::option, "--order", "an order of cells for the OpenGL backend", "pixel",
-                     "use the CPU backend (--backend cpu)"});
+        if (!quality.order_per_pixel) return std::nullopt;
+        return instead("--order", "an order of cells for the OpenGL backend", "pixel", "use the CPU backend (--backend cpu)");
     }
-    if (light_at_vertices(quality.method)) {
-        throw Error({ErrorKind::option, "--method", "a method of light per pixel for the CPU backend", to_string(quality.method),
-                     "use the OpenGL backend (--backend gl)"});
-    }
-    throw Error({ErrorKind::option, "--target", "rgba32f for the CPU backend", to_string(quality.target),
-                 "use the OpenGL backend (--backend gl)"});
+    if (light_at_vertices(quality.method))
+        return instead("--method", "a method of light per pixel for the CPU backend", to_string(quality.method), use_gl);
+    if (quality.target != TargetFormat::rgba32f)
+        return instead("--target", "rgba32f for the CPU backend", to_string(quality.target), use_gl);
+    return std::nullopt;
+}
+
+}  // namespace
+
+bool draws(Backend backend, const Quality& quality, FieldsRead fields) { return !refusal(backend, quality, fields); }
+
+void require_drawn(Backend backend, const Quality& quality, FieldsRead fields) {
+    if (const auto error = refusal(backend, quality, fields)) throw *error;
+}
+
+Backend usual_backend(const Quality& quality, FieldsRead fields) {
+    return quality.order_per_pixel || draws(Backend::cpu, quality, fields) ? Backend::cpu : Backend::gl_osmesa;
 }
 
 std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options) {

@@ -47,7 +47,7 @@ public:
 
 enum class Backend {
     gl_osmesa,  // OpenGL 4.5 core on the CPU, off screen: needs no display and no GPU; draws every method and target
-    cpu         // native: ten times as fast on a machine without a GPU; light for each pixel, rgba32f
+    cpu         // native, the faster one without a GPU; light for each pixel, rgba32f
 };
 
 struct RendererOptions {
@@ -59,6 +59,8 @@ struct RendererOptions {
 bool draws(Backend backend, const Quality& quality, FieldsRead fields = FieldsRead::one);
 // Throws Error (option), which says what to do instead, when it does not; so do renderers.
 void require_drawn(Backend backend, const Quality& quality, FieldsRead fields = FieldsRead::one);
+// The native one where it can; what it does not draw, OpenGL does. Pixels that sort themselves are native only.
+Backend usual_backend(const Quality& quality, FieldsRead fields = FieldsRead::one);
 
 // Throws Error (environment) when the backend is not available here; the message names the package to install.
 std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options = {});

@@ -78,9 +78,9 @@ QualityChoice choose_quality(Renderer& renderer, const Scene& scene, const Camer
     for (const Method& method : choice_methods(max_error)) {
         Quality quality = options.base;
         quality.method = method;
-        if (fields_read(scene) == FieldsRead::two && !takes_opacity_field(method)) continue;
         if (!options.draws || options.draws(quality)) choice.candidates.push_back({quality, {}, 0});
     }
+    assert(!choice.candidates.empty() && choice.candidates.back().quality.method.kind == MethodKind::exact);
     const Image best = renderer.render(scene, camera, size, choice.candidates.back().quality);
     const auto others = std::span(choice.candidates).first(choice.candidates.size() - 1);
     std::vector<PixelId> suspects;
