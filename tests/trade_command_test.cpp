@@ -136,6 +136,8 @@ TEST_F(TradeCommand, RefusesBadArgumentsAndLeavesNothing) {
     expect_refused(1, "trade", "-o no/such/t.html", {"no/such"});
     expect_refused(1, "trade", "--field q -o t.html", {"\"q\""});
     expect_refused(1, "trade", "--transfer none.json --json t.json", {"none.json"});
+    expect_refused(1, "trade", "--backend cpu --opacity-field Points:x -o t.html", {"--opacity-field", "--backend gl"});
+    expect_refused(1, "trade", "--method preint3d:16 --opacity-field Points:x -o t.html", {"--method", "preint3d:16", "integral"});
     expect_refused(2, "trade", "--rounds 0 -o t.html", {"--rounds"});
     expect_refused(2, "trade", "--sample 0 -o t.html", {"--sample"});
     const std::string camera = R"({"projection": "parallel", "eye": [9,2,1], "center": [1,1,1], "up": [0,0,1], "height": 4})";

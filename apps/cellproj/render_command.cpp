@@ -60,13 +60,6 @@ std::string positive_error(std::string& text) {
     return good ? "" : text + " is no error above 0 and up to 1, such as 0.002";
 }
 
-// Without a GPU the native backend is the faster one by far; what it does not draw, OpenGL does.
-Backend choose_backend(const RenderOptions& options, const Quality& quality, FieldsRead fields) {
-    if (options.backend == "gl") return Backend::gl_osmesa;
-    if (options.backend == "cpu") return Backend::cpu;
-    return draws(Backend::cpu, quality, fields) || quality.order_per_pixel ? Backend::cpu : Backend::gl_osmesa;
-}
-
 // picture.png → picture_007.png when there are several.
 std::filesystem::path numbered(const std::filesystem::path& file, std::size_t index, std::size_t count) {
     if (count == 1) return file;
@@ -155,7 +148,7 @@ Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene,
                         double max_error, const Quality& base, double& measured) {
     ChoiceOptions how{.base = base};
     how.base.check_rays = 0;  // the chosen one's order is proved once
-    how.draws = [backend](const Quality& quality) { return draws(backend, quality); };
+    how.draws = [backend, fields = fields_read(scene)](const Quality& quality) { return draws(backend, quality, fields); };
     const QualityChoice choice = [&] {
         const Progress progress("choosing a method");
         return choose_quality(renderer, scene, cameras.front(), size, max_error, how);
@@ -181,8 +174,8 @@ void render_pictures(const RenderOptions& options) {
                     .order = order_method(options.order),  // nothing: auto, pixel
                     .order_per_pixel = options.order == "pixel",
                     .check_rays = options.verify_order ? rays_of_proof : 0};
-    const FieldsRead fields = options.scene.opacity_field.empty() ? FieldsRead::one : FieldsRead::two;
-    const Backend backend = choose_backend(options, quality, fields);
+    const FieldsRead fields = options.scene.fields();
+    const Backend backend = chosen_backend(options.backend).value_or(usual_backend(quality, fields));
     require_drawn(backend, quality, fields);
     require_writable_image(options.output);
     if (!options.stats.empty()) require_writable(options.stats);

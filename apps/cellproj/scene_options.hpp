@@ -10,6 +10,7 @@
 
 #include "input.hpp"
 #include "project/camera.hpp"
+#include "render/renderer.hpp"
 #include "render/scene.hpp"
 #include "surface_input.hpp"
 
@@ -33,6 +34,8 @@ struct SceneOptions {
     std::vector<double> range;  // empty, or low and high
     double opacity_scale = 1;
     bool colors_chosen = false;  // by any of --colors, --range, --axis
+
+    FieldsRead fields() const { return opacity_field.empty() ? FieldsRead::one : FieldsRead::two; }
 };
 
 // Into `options`, which must live as long as the command.
@@ -48,6 +51,9 @@ struct LoadedScene {
 
 // Reads the mesh and chooses field and transfer function; warns of values that are not finite. Throws Error.
 LoadedScene load_scene(const SceneOptions& options);
+
+// The backend that `--backend` names: cpu, gl, or none for auto.
+std::optional<Backend> chosen_backend(const std::string& name);
 
 // The cameras of --camera or of the embedded scene, or one that sees the mesh, from every side of it if it is to `turn`.
 std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& input, ImageSize size, bool turn);

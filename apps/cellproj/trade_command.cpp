@@ -39,9 +39,9 @@ public:
 
 private:
     Renderer& of(const Scene& scene, const Quality& quality) {
-        const bool native = draws(Backend::cpu, quality, fields_read(scene));
-        std::unique_ptr<Renderer>& renderer = native ? cpu_ : gl_;
-        if (!renderer) renderer = make_renderer(native ? Backend::cpu : Backend::gl_osmesa);
+        const Backend backend = usual_backend(quality, fields_read(scene));
+        std::unique_ptr<Renderer>& renderer = backend == Backend::cpu ? cpu_ : gl_;
+        if (!renderer) renderer = make_renderer(backend);
         return *renderer;
     }
 
@@ -49,8 +49,8 @@ private:
 };
 
 std::unique_ptr<Renderer> make_chosen_renderer(const std::string& backend) {
-    if (backend == "auto") return std::make_unique<EitherRenderer>();
-    return make_renderer(backend == "cpu" ? Backend::cpu : Backend::gl_osmesa);
+    if (const auto chosen = chosen_backend(backend)) return make_renderer(*chosen);
+    return std::make_unique<EitherRenderer>();
 }
 
 std::string in_words(const std::string& backend) {
@@ -58,12 +58,16 @@ std::string in_words(const std::string& backend) {
     return backend == "gl" ? "OpenGL on OSMesa" : "the native backend, OpenGL on OSMesa for what it does not draw";
 }
 
+// The backend that has to draw a quality.
+Backend backend_for(const TradeCommandOptions& options, const Quality& quality) {
+    return chosen_backend(options.backend).value_or(usual_backend(quality, options.scene.fields()));
+}
+
 // Those that can draw the scene.
 std::vector<Quality> possible_qualities(const TradeCommandOptions& options) {
     std::vector<Quality> qualities = trade_qualities();
-    const bool two_fields = !options.scene.opacity_field.empty();
     std::erase_if(qualities, [&](const Quality& quality) {
-        return (two_fields && !takes_opacity_field(quality.method)) || (options.backend == "cpu" && !draws(Backend::cpu, quality));
+        return !draws(backend_for(options, quality), quality, options.scene.fields());
     });
     return qualities;
 }
@@ -72,10 +76,7 @@ std::vector<Quality> possible_qualities(const TradeCommandOptions& options) {
 std::vector<Quality> choose_qualities(const TradeCommandOptions& options) {
     if (options.methods.empty() && options.targets.empty()) return possible_qualities(options);
     std::vector<Quality> in_usual_target;
-    for (const std::string& text : options.methods) {
-        in_usual_target.push_back({.method = parse_method(text, "--method")});
-        if (!options.scene.opacity_field.empty()) require_takes_opacity_field(in_usual_target.back().method, "--method");
-    }
+    for (const std::string& text : options.methods) in_usual_target.push_back({.method = parse_method(text, "--method")});
     if (options.methods.empty()) {
         in_usual_target = possible_qualities(options);
         std::erase_if(in_usual_target, [](const Quality& quality) { return quality.target != Quality{}.target; });
@@ -126,8 +127,8 @@ Truths find_truths(const TradeCommandOptions& options, const Scene& scene, const
 void run_trade(const TradeCommandOptions& options) {
     const ImageSize size = require_possible(options.scene);
     const std::vector<Quality> qualities = choose_qualities(options);
-    if (options.backend == "cpu")
-        for (const Quality& quality : qualities) require_drawn(Backend::cpu, quality);
+    if (qualities.empty()) require_drawn(backend_for(options, {}), {}, options.scene.fields());  // says why there is none
+    for (const Quality& quality : qualities) require_drawn(backend_for(options, quality), quality, options.scene.fields());
     check_files(options);
     const LoadedScene loaded = load_scene(options.scene);
     const Scene& scene = loaded.scene;
