@@ -258,6 +258,7 @@ HWY_NOINLINE void add_fragments(D d, const View& view, const CellPlanes& cell, H
 
 // False when nothing can be seen any more anywhere in the tile.
 HWY_INLINE bool close_pixels(TileState& tile, float opaque, int width, int height) {
+    if (opaque >= 1.0F) return true;
     bool any_open = false;
     for (int y = 0; y < height; ++y) {
         std::uint32_t open = tile.open[y];
