@@ -67,7 +67,7 @@ Annotator::Annotator(const Annotations& annotations, const Scene& scene, ImageSi
     require_room(annotations_, size);
     if (!annotations_.title.empty()) place_lines(annotations_.title, title_size * style_.em, view_, true);
     if (annotations_.color_bar) {
-        ColorBar content = describe_color_bar(scene, annotations_.units);
+        ColorBar content = describe_color_bar(scene, annotations_.units, annotations_.bar_axis);
         note_ = content.note;
         place_lines(note_, style_.small, view_, false);
         require_half(view_, size);

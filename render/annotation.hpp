@@ -23,11 +23,12 @@
 namespace cellproj {
 
 struct Annotations {
-    std::optional<BarSide> color_bar;
-    std::string units;     // of the field, written behind its name beside the bar; UTF-8
-    bool axes = false;     // a triad in the lower left corner of the view
-    bool outline = false;  // of the mesh's box (annotation_outline.hpp)
-    std::string title;     // above the view; UTF-8, broken at spaces where it is too long
+    std::optional<BarSide> color_bar = {};
+    std::string units = {};  // of the field, written behind its name beside the bar; UTF-8
+    ScalarAxis bar_axis = ScalarAxis::linear;  // log for functions that were spread over ln s: they do not tell
+    bool axes = false;       // a triad in the lower left corner of the view
+    bool outline = false;    // of the mesh's box (annotation_outline.hpp)
+    std::string title = {};  // above the view; UTF-8, broken at spaces where it is too long
     // What the picture will be written over, 0..1: text is black or white, whatever has more contrast.
     glm::dvec3 background{1.0};
 

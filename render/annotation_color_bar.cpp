@@ -33,8 +33,9 @@ Shares shares_beyond(const std::vector<double>& values, double low, double high)
 
 std::string percent(double share) {
     if (share < 1e-4) return "less than 0.01 %";
+    if (share > 0.99 && share < 1) return "more than 99 %";
     char text[16];
-    std::snprintf(text, sizeof text, "%.*f", share < 0.1 ? 2 : 0, 100 * share);
+    std::snprintf(text, sizeof text, share < 0.1 ? "%.2g" : "%.0f", 100 * share);
     return std::string(text) + " %";
 }
 
@@ -108,6 +109,8 @@ void describe_two_fields(const Scene& scene, ColorBar& bar) {
     if (!note.empty()) bar.note += (bar.note.empty() ? "" : " ") + note;
 }
 
+Ticks ticks_of(const ColorBar& content, int most) { return (content.axis == ScalarAxis::log ? log_ticks : nice_ticks)(content.low, content.high, most); }
+
 // Lays out one bar. "Across" is from the bar towards its labels: outwards, away from the volume.
 class Planner {
 public:
@@ -122,9 +125,10 @@ public:
 
     void vertical() {
         const int header = plan_.ticks.common.empty() ? 0 : rows(line_), footer = rows(static_cast<double>(opacity_.size()) * small_line_);
-        const int room = within_.height() - header - footer - 2 * (plan_.arrow + pad_);
+        const int beyond = std::max(plan_.arrow, rows(cap_ / 2) + gap_);  // marks, and the halves of the labels at the ends
+        const int room = within_.height() - header - footer - 2 * (beyond + pad_);
         const int length = std::clamp(room, 1, style_.ems(26));
-        const int top = within_.y0 + pad_ + plan_.arrow + header + std::max(room - length, 0) / 2;
+        const int top = within_.y0 + pad_ + beyond + header + std::max(room - length, 0) / 2;
         set_ticks(length, 2.2 * style_.em);
 
         const int labels = width_of_labels();
@@ -156,8 +160,8 @@ public:
             const double width = std::min<double>(font_.advance(text, size), column - 2 * pad_);
             put(text, size, right ? plan_.area.x0 + pad_ : plan_.area.x1 - pad_ - rows(width), y, column - 2 * pad_);
         };
-        if (header) put_flush(plan_.ticks.common, style_.em, top - plan_.arrow - rows(line_ - cap_));
-        double y = plan_.bar.y1 + plan_.arrow + small_line_;
+        if (header) put_flush(plan_.ticks.common, style_.em, top - beyond - rows(line_ - cap_));
+        double y = plan_.bar.y1 + beyond + small_line_;
         for (const std::string& text : opacity_) {
             put_flush(text, style_.small, static_cast<int>(std::lround(y)));
             y += small_line_;
@@ -207,7 +211,7 @@ private:
     }
 
     void set_ticks(int length, double apart) {
-        plan_.ticks = nice_ticks(plan_.content.low, plan_.content.high, std::max(1, static_cast<int>(length / apart)));
+        plan_.ticks = ticks_of(plan_.content, std::max(1, static_cast<int>(length / apart)));
     }
 
     // The ends say that they stand for more.
@@ -308,22 +312,24 @@ glm::dvec3 ColorBar::color(double s) const {
 
 double ColorBar::opacity(double a, double b) const { return path ? opacity_of_depth(transfer->max_extinction(a, b) * *path) : 0; }
 
-ColorBar describe_color_bar(const Scene& scene, const std::string& units) {
+ColorBar describe_color_bar(const Scene& scene, const std::string& units, ScalarAxis axis) {
     ColorBar bar{};
     bar.transfer = scene.transfer;
     bar.brightest = brightest_of(*scene.transfer);
     bar.name = units.empty() ? scene.field->name : scene.field->name + " [" + units + "]";
     scene.opacity_field ? describe_two_fields(scene, bar) : describe_one_field(scene, bar);
+    bar.axis = bar.low >= 1e-300 ? axis : ScalarAxis::linear;
     return bar;
 }
 
 double ColorBarPlan::scalar(double distance) const {
-    const double share = distance / length();
-    return share >= 1 ? content.high : std::min(content.low + share * (content.high - content.low), content.high);
+    return scalar_between(content.low, content.high, std::clamp(distance / length(), 0.0, 1.0), content.axis);
 }
 
 double ColorBarPlan::distance(double s) const {
-    return content.low == content.high ? length() / 2.0 : length() * ((s - content.low) / (content.high - content.low));
+    if (content.low == content.high) return length() / 2.0;
+    const bool log = content.axis == ScalarAxis::log;
+    return length() * (log ? std::log(s / content.low) / std::log(content.high / content.low) : (s - content.low) / (content.high - content.low));
 }
 
 PixelBox ColorBarPlan::slice(const PixelBox& of, int i) const {
@@ -333,20 +339,21 @@ PixelBox ColorBarPlan::slice(const PixelBox& of, int i) const {
 ColorBarPlan plan_color_bar(ColorBar content, BarSide side, const PixelBox& within, const Font& font, const AnnotationStyle& style) {
     ColorBarPlan plan{.content = std::move(content), .side = side, .area = {}, .bar = {}, .strip = {}, .arrow = 0, .ticks = {}, .texts = {}, .style = style};
     // Whether labels leave something out, which takes a line, hardly depends on how many there are.
-    plan.ticks = nice_ticks(plan.content.low, plan.content.high, 5);
+    plan.ticks = ticks_of(plan.content, 5);
     Planner planner(plan, within, font);
     plan.vertical() ? planner.vertical() : planner.horizontal();
     return plan;
 }
 
 void draw_color_bar(Image& image, const ColorBarPlan& plan) {
+    // The bar comes over the edges of the marks: its own pixels are the function's.
+    draw_arrow(image, plan, false);
+    draw_arrow(image, plan, true);
     for (int i = 0; i < plan.length(); ++i) fill(image, plan.slice(plan.bar, i), {plan.content.color(plan.scalar(i + 0.5))}, plan.area);
     // Around it, so that colours like the paper's have an end.
     const int line = plan.style.line;
     frame(image, {plan.bar.x0 - line, plan.bar.y0 - line, plan.bar.x1 + line, plan.bar.y1 + line}, line, plan.style.ink, plan.area);
     draw_opacity(image, plan);
-    draw_arrow(image, plan, false);
-    draw_arrow(image, plan, true);
     draw_ticks(image, plan);
     for (const PlacedText& text : plan.texts) draw_text(image, text, plan.style.ink, plan.area);
 }

@@ -31,6 +31,7 @@ enum class Beyond {
 struct ColorBar {
     std::shared_ptr<const TransferFunction> transfer;
     double low, high;  // of the function: its first and last node
+    ScalarAxis axis;   // what the length of the bar is divided by; linear where `low` is not above 0
     std::string name;  // of the field, with its units
     Beyond below, above;
     std::string note;  // which values lie beyond the ends and what becomes of them; empty: none
@@ -48,7 +49,7 @@ struct ColorBar {
 };
 
 // For a valid scene. The range is that of all nodes; of the colour nodes where opacity is another field's.
-ColorBar describe_color_bar(const Scene& scene, const std::string& units = {});
+ColorBar describe_color_bar(const Scene& scene, const std::string& units = {}, ScalarAxis axis = ScalarAxis::linear);
 
 // Where everything is, in pixels of the picture.
 struct ColorBarPlan {

@@ -90,12 +90,12 @@ struct Step {
     int exponent;
 };
 
-// The smallest step that is at least `least`, but for rounding.
+// The smallest step that is at least `least`, but for rounding: a range of 1e-3 at 1e6 is off by 5e-8 of itself.
 Step step_of(double least) {
     int e = static_cast<int>(std::floor(std::log10(least)));
     for (; ; ++e)
         for (const int m : {1, 2, 5})
-            if (decimal(m, e) >= least * (1 - 1e-12)) return {m, e};
+            if (decimal(m, e) >= least * (1 - 1e-6)) return {m, e};
 }
 
 // The one of the numbers first .. last that has the most zeros at its end, the nearest to 0 of several.
@@ -131,7 +131,7 @@ Ticks nice_ticks(double low, double high, int most) {
     const int e = step.exponent;
     const double width = decimal(step.mantissa, e);
     // A tick that is beyond an end by rounding alone stands at the end.
-    const double slack = 1e-9 * width;
+    const double slack = 1e-9 * width + 0x1p-52 * largest;
     const auto first = static_cast<Whole>(std::ceil((low - slack) / width)), last = static_cast<Whole>(std::floor((high + slack) / width));
 
     // In units of 10^e from here.
@@ -161,6 +161,23 @@ Ticks nice_ticks(double low, double high, int most) {
     if (offset != 0) {
         result.common += (result.common.empty() ? "" : " ") + std::string(offset > 0 ? "+" : "") + lone_text(offset, e);
     }
+    return result;
+}
+
+Ticks log_ticks(double low, double high, int most) {
+    assert(1e-300 <= low && low <= high && high <= 1e300 && most >= 1);
+    // An end that is a power of ten but for rounding counts as one.
+    const int first = static_cast<int>(std::ceil(std::log10(low) - 1e-12)), last = static_cast<int>(std::floor(std::log10(high) + 1e-12));
+    if (last - first < 1) return nice_ticks(low, high, most);
+    const int decades = last - first + 1, every = (decades + most - 1) / most;
+    Ticks result{{}, {low, number_text(low)}, {high, number_text(high)}, {}};
+    const bool finer = 3 * decades <= most;
+    for (int e = finer ? first - 1 : first; e <= last; e += every)
+        for (const int m : {1, 2, 5}) {
+            if (m > 1 && !finer) break;
+            const double value = decimal(m, e);
+            if (value >= low * (1 - 1e-12) && value <= high * (1 + 1e-12)) result.ticks.push_back({std::clamp(value, low, high), lone_text(m, e)});
+        }
     return result;
 }
 

@@ -28,6 +28,10 @@ struct Ticks {
 // narrower than 1e-290; low = high gives the ends alone, to six digits.
 Ticks nice_ticks(double low, double high, int most);
 
+// The same for an axis of ln s, 0 < low ≤ high, 1e-300 ≤ low: powers of ten, with 2 and 5 times of them where there is room, or every second,
+// third … one where there are many. Ranges that hold fewer than two powers of ten get nice_ticks.
+Ticks log_ticks(double low, double high, int most);
+
 // A number in words of at most `digits` digits: "0.25", "1.5×10⁻⁷", "−3". Finite.
 std::string number_text(double value, int digits = 4);
 

@@ -54,9 +54,10 @@ std::shared_ptr<const Font> require_annotated(const AnnotationOptions& options, 
     return options.annotations.text() ? std::make_shared<const Font>(options.font, "--font") : nullptr;
 }
 
-Annotator make_annotator(const AnnotationOptions& options, const Scene& scene, ImageSize size, const std::vector<double>& background,
-                         std::shared_ptr<const Font> font) {
+Annotator make_annotator(const AnnotationOptions& options, const SceneOptions& scene_options, const Scene& scene, ImageSize size,
+                         const std::vector<double>& background, std::shared_ptr<const Font> font) {
     Annotations annotations = options.annotations;
+    if (scene_options.axis == "log") annotations.bar_axis = ScalarAxis::log;
     annotations.background = {background[0], background[1], background[2]};
     if (font) {
         warn_of_missing_characters(*font, annotations.title, options);

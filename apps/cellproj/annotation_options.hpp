@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/annotation.hpp"
+#include "scene_options.hpp"
 
 namespace CLI {
 class App;
@@ -30,7 +31,7 @@ std::shared_ptr<const Font> require_annotated(const AnnotationOptions& options, 
 
 // The annotator of all pictures, for a colour behind them of 3 channels 0..1. Says on stderr what the bar's note says in the picture, and
 // which characters the font lacks. Throws Error as Annotator does.
-Annotator make_annotator(const AnnotationOptions& options, const Scene& scene, ImageSize size, const std::vector<double>& background,
-                         std::shared_ptr<const Font> font);
+Annotator make_annotator(const AnnotationOptions& options, const SceneOptions& scene_options, const Scene& scene, ImageSize size,
+                         const std::vector<double>& background, std::shared_ptr<const Font> font);
 
 }  // namespace cellproj::cli

@@ -185,7 +185,7 @@ void render_pictures(const RenderOptions& options) {
 
     const auto [input, scene] = load_scene(options.scene);
     const std::vector<Camera> cameras = cameras_of_pictures(options, input, size);
-    const Annotator annotator = make_annotator(options.annotations, scene, size, options.background, font);
+    const Annotator annotator = make_annotator(options.annotations, options.scene, scene, size, options.background, font);
     const ImageSize view = annotator.view_size();  // what annotations leave to the volume
     std::vector<Camera> views;
     for (const Camera& camera : cameras) views.push_back(annotator.view_camera(camera));
