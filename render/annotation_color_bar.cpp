@@ -132,10 +132,11 @@ public:
         set_ticks(length, 2.2 * style_.em);
 
         const int labels = width_of_labels();
-        double captions = 0;
-        for (const std::string& text : opacity_) captions = std::max(captions, font_.advance(text, style_.small));
-        const double most_captions = 9 * style_.em;  // longer names of fields are cut
-        const int column = std::max(pad_ + strip_ + thick_ + tick_ + gap_ + labels + gap_ + rows(line_), pad_ + rows(std::min(captions, most_captions))) + pad_;
+        // Numbers are never cut; long names of an opacity field are.
+        double beneath = font_.advance(plan_.ticks.common, style_.em);
+        for (const std::string& text : opacity_) beneath = std::max(beneath, std::min(font_.advance(text, style_.small), 9 * style_.em));
+        const int beside_bar = strip_ + thick_ + tick_ + gap_ + labels + gap_ + rows(line_);
+        const int column = pad_ + std::max(beside_bar, rows(beneath)) + pad_;
         const bool right = plan_.side == BarSide::right;
         plan_.area = right ? PixelBox{within_.x1 - column, within_.y0, within_.x1, within_.y1} : PixelBox{within_.x0, within_.y0, within_.x0 + column, within_.y1};
         const int bar = right ? plan_.area.x0 + pad_ + strip_ : plan_.area.x1 - pad_ - strip_ - thick_;
@@ -169,33 +170,31 @@ public:
     }
 
     void horizontal() {
-        const int row = pad_ + strip_ + thick_ + tick_ + gap_ + 2 * rows(line_) + pad_;
+        const int caption = opacity_.empty() ? 0 : rows(small_line_), row = pad_ + caption + strip_ + thick_ + tick_ + gap_ + 2 * rows(line_) + pad_;
         plan_.area = {within_.x0, within_.y1 - row, within_.x1, within_.y1};
         const int room = within_.width() - 2 * (std::max(plan_.arrow, style_.ems(2.5)) + pad_);
         const int length = std::clamp(room, 1, style_.ems(40));
         set_ticks(length, 4.5 * style_.em);
-        const int left = within_.x0 + (within_.width() - length) / 2, top = plan_.area.y0 + pad_ + strip_;
+        const int left = within_.x0 + (within_.width() - length) / 2, top = plan_.area.y0 + pad_ + caption + strip_;
         plan_.bar = {left, top, left + length, top + thick_};
         plan_.strip = {left, top - strip_, left + length, top - style_.line};
+        std::string opacity;
+        for (const std::string& part : opacity_) opacity += (opacity.empty() ? "" : " ") + part;
+        put(opacity, style_.small, left, top - strip_ - rows(0.35 * style_.small), length);
+
         const int base = plan_.bar.y1 + tick_ + gap_ + rows(cap_);
         for (const auto& [at, mask] : chosen_labels(0.8 * style_.em)) {
             const int width = static_cast<int>(std::lround(mask.advance));
             const int x = static_cast<int>(std::lround(left + at - mask.advance / 2));
             plan_.texts.push_back({mask, std::clamp(x, within_.x0 + 1, std::max(within_.x0 + 1, within_.x1 - width - 1)), base});
         }
-        // The name stands in the middle, opacity and what labels leave out on both sides of it.
-        std::string opacity;
-        for (const std::string& part : opacity_) opacity += (opacity.empty() ? "" : " ") + part;
-        const double aside = std::max(font_.advance(opacity, style_.small), font_.advance(plan_.ticks.common, style_.em));
-        const double left_over = std::max(within_.width() - 2 * (aside + 2 * pad_), within_.width() / 3.0);
-        const std::string name = shortened(font_, plan_.content.name, style_.em, left_over);
-        const double name_width = font_.advance(name, style_.em);
+        // The name in the middle of its line, what labels leave out at the line's end.
+        const double common = font_.advance(plan_.ticks.common, style_.em);
+        const double beside = common > 0 ? common + pad_ : 0;
+        const std::string name = shortened(font_, plan_.content.name, style_.em, within_.width() - 2 * (beside + pad_));
         const int second = base + rows(line_);
-        put(name, style_.em, static_cast<int>(std::lround(left + (length - name_width) / 2)), second, left_over);
-        const double beside = (within_.width() - name_width) / 2 - 2 * pad_;
-        put(opacity, style_.small, within_.x0 + pad_, second, beside);
-        const std::string common = shortened(font_, plan_.ticks.common, style_.em, beside);
-        put(common, style_.em, within_.x1 - pad_ - static_cast<int>(std::ceil(font_.advance(common, style_.em))), second, beside);
+        put(name, style_.em, static_cast<int>(std::lround(left + (length - font_.advance(name, style_.em)) / 2)), second, within_.width());
+        put(plan_.ticks.common, style_.em, within_.x1 - pad_ - rows(common), second, within_.width() - 2 * pad_);
     }
 
 private:

@@ -197,19 +197,50 @@ std::string shortened(const Font& font, std::string_view text, double size, doub
     return too_long == bounds.begin() ? "" : part(*(too_long - 1));
 }
 
-std::vector<std::string> wrapped(const Font& font, std::string_view text, double size, double width) {
-    std::vector<std::string> lines;
-    for (std::size_t i = 0; i < text.size();) {
-        const std::size_t begin = text.find_first_not_of(' ', i);
-        if (begin == std::string_view::npos) break;
+namespace {
+
+std::vector<std::string> words_of(std::string_view text) {
+    std::vector<std::string> words;
+    for (std::size_t begin = 0; (begin = text.find_first_not_of(' ', begin)) != std::string_view::npos;) {
         const std::size_t end = std::min(text.find(' ', begin), text.size());
-        const std::string word(text.substr(begin, end - begin));
+        words.emplace_back(text.substr(begin, end - begin));
+        begin = end;
+    }
+    return words;
+}
+
+// As many words in each line as fit.
+std::vector<std::string> filled_lines(const Font& font, const std::vector<std::string>& words, double size, double width) {
+    std::vector<std::string> lines;
+    for (const std::string& word : words) {
         const std::string joined = lines.empty() ? word : lines.back() + " " + word;
         if (!lines.empty() && font.advance(joined, size) <= width)
             lines.back() = joined;
         else
-            lines.push_back(shortened(font, word, size, width));
-        i = end;
+            lines.push_back(word);
+    }
+    return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> wrapped(const Font& font, std::string_view text, double size, double width) {
+    std::vector<std::string> words = words_of(text);
+    double too_narrow = 0, enough = width;  // for the number of lines that fill the width
+    for (std::string& word : words) {
+        word = shortened(font, word, size, width);
+        too_narrow = std::max(too_narrow, font.advance(word, size) - 1e-9);
+    }
+    std::vector<std::string> lines = filled_lines(font, words, size, width);
+    while (lines.size() > 1 && enough - too_narrow > size / 2) {
+        const double between = (enough + too_narrow) / 2;
+        std::vector<std::string> narrower = filled_lines(font, words, size, between);
+        if (narrower.size() > lines.size()) {
+            too_narrow = between;
+        } else {
+            enough = between;
+            lines = std::move(narrower);
+        }
     }
     return lines;
 }

@@ -53,7 +53,8 @@ private:
     std::unique_ptr<Face> face_;
 };
 
-// Lines of at most `width` pixels, broken at spaces; a word that is longer by itself is cut and ends in "…". None for an empty text.
+// As few lines of at most `width` pixels as there can be, about equally long, broken at spaces; a word that is longer by itself is cut and ends
+// in "…". None for an empty text.
 std::vector<std::string> wrapped(const Font& font, std::string_view text, double size, double width);
 // The text, or as much of it as fits with "…" behind.
 std::string shortened(const Font& font, std::string_view text, double size, double width);

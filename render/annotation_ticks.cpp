@@ -150,8 +150,11 @@ Ticks nice_ticks(double low, double high, int most) {
     }
     const auto end = [&](double value) -> Tick {
         // Differences to the offset are exact where it matters: both are close to each other.
-        const double rest = (value - decimal(offset, e)) / decimal(1, e);
-        return {value, short_text(static_cast<Whole>(std::llround(rest * 100)), e - 2 - exponent)};
+        const double hundredths = (value - decimal(offset, e)) / decimal(1, e - 2);
+        const auto m = static_cast<Whole>(std::llround(hundredths));
+        // Zeros at the end stay where they say that the end was rounded.
+        const bool whole = std::abs(hundredths - static_cast<double>(m)) <= 1e-6 + 0x1p-51 * largest / decimal(1, e - 2);
+        return {value, whole ? short_text(m, e - 2 - exponent) : plain_text(m, e - 2 - exponent)};
     };
     result.low = end(low);
     result.high = end(high);

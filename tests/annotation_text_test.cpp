@@ -72,6 +72,8 @@ TEST(AnnotationTicks, EndsAreRoundedToAHundredthOfTheStep) {
     EXPECT_EQ(labels_of(ticks), (Labels{"1", "2", "3", "4", "5"}));
     EXPECT_EQ(ticks.low.label, "0.11");
     EXPECT_EQ(ticks.high.label, "5.86");
+    EXPECT_EQ(nice_ticks(0.397, 4.9, 5).low.label, "0.40") << "rounded";
+    EXPECT_EQ(nice_ticks(0.397, 4.9, 5).high.label, "4.9") << "exact";
     EXPECT_EQ(ticks.low.value, 0.113847);
     EXPECT_EQ(ticks.high.value, 5.86123);
 }
@@ -248,6 +250,9 @@ TEST_F(AnnotationText, IsBrokenAtSpacesAndCutWithASign) {
         EXPECT_EQ(joined, text);
     }
     EXPECT_TRUE(wrapped(font, "  ", 14, 100).empty());
+    // No word is left alone in a line, and none is cut that need not be.
+    EXPECT_EQ(wrapped(font, "aaaa bbbb cccc dddd", 14, font.advance("aaaa bbbb cccc", 14)), (Labels{"aaaa bbbb", "cccc dddd"}));
+    EXPECT_EQ(wrapped(font, "aaaaaaaaaaaa b c", 14, font.advance("aaaaaaaaaaaa", 14)), (Labels{"aaaaaaaaaaaa", "b c"}));
     const std::string cut = shortened(font, "StagnationEnthalpy∞∞∞", 14, 80);
     EXPECT_LE(font.advance(cut, 14), 80);
     EXPECT_EQ(cut.substr(cut.size() - 3), "…");
