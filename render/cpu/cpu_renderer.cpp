@@ -155,8 +155,6 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
         return Region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
     };
     const Region first = region_at(0, 0);
-    const bool single = first.width == size.width && first.height == size.height;
-    const bool may_be_opaque = classification_->may_be_opaque();
 
     // Points and boxes do not depend on the order: they are found beside it, where part of a sort leaves cores idle.
     const Stopwatch sort;
@@ -169,7 +167,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
         },
         [&] {
             mesh_.set_view(camera, size);
-            if (single && (quality.order_per_pixel || !may_be_opaque)) bins_.find_cells(mesh_.cells(), first);
+            bins_.find_cells(mesh_.cells(), first);
         });
     statistics.ms.sort = sort.ms();
 
@@ -181,7 +179,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     for (int y = 0; y < size.height; y += first.height)
         for (int x = 0; x < size.width; x += first.width) {
             const Region region = region_at(x, y);
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, may_be_opaque);
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, classification_->may_be_opaque());
             draw(image, region, quality.order_per_pixel, statistics);
             statistics.counts.drawn += bins_.drawn();
         }

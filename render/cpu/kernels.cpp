@@ -38,10 +38,6 @@ public:
           right_(static_cast<float>(region.width - 1)), bottom_(static_cast<float>(region.height - 1)),
           at_left_(region.x == 0), at_top_(region.y == 0) {}
 
-    HWY_INLINE void prefetch_points(std::uint32_t item) const {
-        for (const VertexId v : cells_.corners(item)) hwy::Prefetch(&cells_.points[v]);
-    }
-
     HWY_INLINE TileBox of(std::uint32_t item) const {
         if (item < cells_.tets.size() && !cells_.visible.empty() && !cells_.visible[item]) return {};
         const hn::CappedTag<float, 4> d;  // x, y, nearness, scalar
@@ -67,17 +63,7 @@ private:
     bool at_left_, at_top_;
 };
 
-void FindBoxesOf(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, TileBox* boxes) {
-    constexpr std::size_t early = 32, soon = 16;  // how long before memory is asked: for the corners of a cell, for its points
-    const BoxFinder finder(cells, region);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        if (i + early < items.size()) hwy::Prefetch(cells.corners(items[i + early]).data());
-        if (i + soon < items.size()) finder.prefetch_points(items[i + soon]);
-        boxes[items[i]] = finder.of(items[i]);
-    }
-}
-
-void FindBoxesFrom(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, TileBox* boxes) {
+void FindBoxes(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, TileBox* boxes) {
     const BoxFinder finder(cells, region);
     for (std::size_t item = first; item < end; ++item) boxes[item] = finder.of(static_cast<std::uint32_t>(item));
 }
@@ -145,19 +131,14 @@ HWY_AFTER_NAMESPACE();
 
 namespace cellproj::cpu {
 
-HWY_EXPORT(FindBoxesOf);
-HWY_EXPORT(FindBoxesFrom);
+HWY_EXPORT(FindBoxes);
 HWY_EXPORT(DrawTile);
 HWY_EXPORT(DrawTileByPixels);
 HWY_EXPORT(LightOfSegments);
 
-void find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, std::span<TileBox> boxes) {
-    HWY_DYNAMIC_DISPATCH(FindBoxesOf)(cells, region, items, boxes.data());
-}
-
 void find_boxes(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, std::span<TileBox> boxes) {
     assert(end <= boxes.size());
-    HWY_DYNAMIC_DISPATCH(FindBoxesFrom)(cells, region, first, end, boxes.data());
+    HWY_DYNAMIC_DISPATCH(FindBoxes)(cells, region, first, end, boxes.data());
 }
 
 std::size_t draw_tile(const ScreenCells& cells, const Shading& shading, const Tile& tile, std::span<const std::uint32_t> items) {

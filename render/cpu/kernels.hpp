@@ -71,9 +71,7 @@ struct Region {
     int x, y, width, height;  // pixels
 };
 
-// The boxes of items, into boxes[item]: of a list, or of all from first to end − 1, in the order of memory. Empty for cells that are
-// not visible.
-void find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, std::span<TileBox> boxes);
+// The boxes of items first .. end − 1, into boxes[item]; empty for cells that are not visible.
 void find_boxes(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, std::span<TileBox> boxes);
 
 // How a segment becomes light: by the pieces of the transfer function or by the tables of a method, one of both.

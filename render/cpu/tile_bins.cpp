@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
-#include <utility>
 
 namespace cellproj::cpu {
 
@@ -48,9 +47,10 @@ void TileBins::begin(const ScreenCells& cells, const Region& region, std::span<c
     items_ = items;
     extra_drawn_ = extra_drawn;
     boxes_.resize(cells.tets.size() + cells.extra.size());
-    if (cells_found_) find_boxes(cells, region, cells.tets.size(), boxes_.size(), boxes_);
-    boxes_found_ = std::exchange(cells_found_, false);
-    chunks_left_ = chunks_to_find_ = (items.size() + items_per_chunk - 1) / items_per_chunk;
+    if (!cells_found_) find_cells(cells, region);
+    cells_found_ = false;
+    find_boxes(cells, region, cells.tets.size(), boxes_.size(), boxes_);
+    chunks_left_ = chunks_to_count_ = (items.size() + items_per_chunk - 1) / items_per_chunk;
     counts_.resize(chunks_left_);
     entries_of_chunk_.resize(chunks_left_);
     next_tile_ = drawn_ = 0;
@@ -82,14 +82,12 @@ std::size_t TileBins::count(std::span<const std::uint32_t> items, Counts& counts
     return drawn;
 }
 
-void TileBins::find(std::size_t begin, std::size_t end) {
+void TileBins::count_chunks(std::size_t begin, std::size_t end) {
     std::atomic<std::size_t> drawn = 0;
     oneapi::tbb::parallel_for(begin, end, [&](std::size_t chunk) {
-        const auto items = chunk_of(items_, chunk);
-        if (!boxes_found_) find_boxes(*cells_, region_, items, boxes_);
         Counts& counts = counts_[chunk];
         counts.fill(0);
-        drawn += count(items, counts);
+        drawn += count(chunk_of(items_, chunk), counts);
         entries_of_chunk_[chunk] = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
     });
     drawn_ += drawn;
@@ -127,9 +125,9 @@ bool TileBins::next() {
     if (chunks_left_ == 0 || std::find(full_.begin(), full_.end(), std::uint8_t{0}) == full_.end()) return false;
     const std::size_t wanted = opaque_ ? std::max(least_slab, (counts_.size() + slabs - 1) / slabs) : chunks_left_;
     const std::size_t end = chunks_left_, least = end - std::min(wanted, end);
-    if (least < chunks_to_find_) {
-        find(least, std::min(chunks_to_find_, end));
-        chunks_to_find_ = least;
+    if (least < chunks_to_count_) {
+        count_chunks(least, std::min(chunks_to_count_, end));
+        chunks_to_count_ = least;
     }
     std::size_t entries = entries_of_chunk_[--chunks_left_];
     while (chunks_left_ > least && entries + entries_of_chunk_[chunks_left_ - 1] <= budget_) entries += entries_of_chunk_[--chunks_left_];
@@ -139,8 +137,8 @@ bool TileBins::next() {
 
 bool TileBins::next_tiles() {
     if (next_tile_ == tiles_per_region || items_.empty()) return false;
-    if (chunks_to_find_ > 0) find(0, chunks_to_find_);
-    chunks_to_find_ = 0;
+    if (chunks_to_count_ > 0) count_chunks(0, chunks_to_count_);
+    chunks_to_count_ = 0;
     const std::size_t first = next_tile_;
     for (std::size_t entries = 0; next_tile_ < tiles_per_region; ++next_tile_) {
         for (const Counts& counts : counts_) entries += counts[next_tile_];

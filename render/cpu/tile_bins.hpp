@@ -22,11 +22,10 @@ class TileBins {
 public:
     explicit TileBins(std::size_t budget = std::size_t{1} << 24) : budget_(budget) {}
 
-    // The boxes of all whole cells over a region, in the order of memory, which is several times faster than in that of the items. For a
-    // begin() of this region that will want most of them; may run while the order is still to be found.
+    // The boxes of all whole cells over the region of the next begin(), which else finds them: this may run while the order is
+    // still to be found. In the order of memory, where points of one cell are near those of the next.
     void find_cells(const ScreenCells& cells, const Region& region);
-    // Items, back to front, over a region. The arguments must outlive the slabs. `opaque`: whether tiles may become full. Boxes
-    // that were not found before are found slab by slab.
+    // Items, back to front, over a region. The arguments must outlive the slabs. `opaque`: whether tiles may become full.
     void begin(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
                std::span<std::uint8_t> extra_drawn, bool opaque);
     // The next slab towards the back; all cores take part. False when there is none left.
@@ -38,7 +37,7 @@ public:
     std::span<const std::uint32_t> tile(int x, int y) const;
     // For the tile's drawer to set to 1: nothing behind can be seen in it. Further slabs leave it out.
     std::uint8_t& full(int x, int y) { return full_[static_cast<std::size_t>(y * region_side + x)]; }
-    // Whole cells that the slabs so far count as drawn (find_boxes).
+    // Whole cells that the slabs so far count as drawn: they meet a tile that is not full, in the first region that they meet.
     std::size_t drawn() const { return drawn_; }
 
 private:
@@ -47,7 +46,7 @@ private:
     template <class Body>
     void for_each_box(std::span<const std::uint32_t> items, const Body& body) const;
     std::size_t count(std::span<const std::uint32_t> items, Counts& counts);
-    void find(std::size_t begin, std::size_t end);
+    void count_chunks(std::size_t begin, std::size_t end);
     void fill(std::size_t begin, std::size_t end, std::size_t first_tile, std::size_t end_tile);
 
     std::size_t budget_;                       // entries
@@ -57,12 +56,11 @@ private:
     std::span<std::uint8_t> extra_drawn_;
     std::vector<TileBox> boxes_;               // #T + #extra
     bool cells_found_ = false;                 // by find_cells, for the next begin()
-    bool boxes_found_ = false;                 // boxes_ holds all of them
     std::vector<Counts> counts_;               // per chunk
     std::vector<std::size_t> entries_of_chunk_;
     std::vector<Counts> places_;               // per chunk of a slab: where its next entry goes
     std::size_t chunks_left_ = 0;              // the slabs go from the last chunk, the nearest, to the first
-    std::size_t chunks_to_find_ = 0;           // without boxes so far: the first ones
+    std::size_t chunks_to_count_ = 0;          // the first ones, not counted so far
     bool opaque_ = false;
     std::size_t next_tile_ = 0;                // of next_tiles
     std::vector<std::uint32_t> entries_;       // of the slab, tile by tile
