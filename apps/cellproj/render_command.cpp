@@ -230,6 +230,7 @@ void add_render_command(CLI::App& app) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a mesh to a picture.");
     add_scene_options(*command, options->scene);
+    add_iso_options(*command, options->scene.iso);
     command->add_option("-o,--output", options->output, "The picture: .png or .exr; several become NAME_000.png …")
         ->required();
     command->add_option("--orbit", options->orbit_degrees, "Turn the camera by DEGREES in all, over --frames pictures")

@@ -83,7 +83,6 @@ public:
 
     void prepare(const Scene& scene, const Quality& quality) override {
         require_drawn(Backend::cpu, quality, fields_read(scene));
-        refuse_surfaces(scene, "cpu");
         arena_.execute([&] { prepare_here(scene, quality); });
     }
 
@@ -92,14 +91,15 @@ public:
         validate(camera, "camera");
         validate(size, "size");
         require_drawn(Backend::cpu, quality, fields_read(scene));
-        refuse_surfaces(scene, "cpu");
         return arena_.execute([&] { return render_here(scene, camera, size, quality, statistics); });
     }
 
 private:
     void prepare_here(const Scene& scene, const Quality& quality);
     Image render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out);
-    void draw(Image& image, const Region& region, bool order_per_pixel, Statistics& statistics);
+    enum class Drawing { by_cells, by_pixels, nearest_surfaces };
+    void draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics);
+    bool may_be_opaque() const;
 
     oneapi::tbb::task_arena arena_;
     std::optional<PreparedScene> prepared_;
@@ -109,6 +109,7 @@ private:
     ScreenMesh mesh_;
     TileBins bins_;
     std::vector<std::uint8_t> extra_drawn_;
+    std::vector<PixelTrail> trails_;  // with isosurfaces, of the picture's pixels
     oneapi::tbb::enumerable_thread_specific<PendingFragments> pending_;
 };
 
@@ -123,6 +124,13 @@ void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
         mesh_.set_visible();
+    }
+    if (same_cells && prepared_->scene().surfaces != scene.surfaces) {
+        prepared_->set_surfaces(scene.surfaces);
+        mesh_.set_visible();
+        mesh_.set_surfaces();
+    } else if (same_cells && !same_transfer) {
+        mesh_.set_surfaces();  // with or without a medium
     }
     const bool same_method = classification_ && method_ == quality.method;
     if (same_transfer && same_method && classified_) return;
@@ -151,23 +159,28 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
 
     const Stopwatch sort;
     OrderReport order_report;
+    const Drawing drawing = prepared_->only_opaque_surfaces() ? Drawing::nearest_surfaces
+                            : quality.order_per_pixel         ? Drawing::by_pixels
+                                                              : Drawing::by_cells;
     // Pixels that sort their own fragments want cells nearly sorted, no more.
-    const ViewOrder order =
-        prepared_->order(camera, size, quality.order_per_pixel ? OrderMethod::centroid : quality.order, &order_report);
+    const ViewOrder order = drawing == Drawing::nearest_surfaces
+                                ? ViewOrder{prepared_->surfaces()->crossed(), {}}
+                                : prepared_->order(camera, size, drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order, &order_report);
     statistics.ms.sort = sort.ms();
 
     const Stopwatch projecting;
     mesh_.set_view(camera, size);
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
+    if (prepared_->surfaces()) trails_.assign(image.pixels.size(), {});
     statistics.ms.project = projecting.ms();
 
     constexpr int side = region_side * tile_side;
     for (int y = 0; y < size.height; y += side)
         for (int x = 0; x < size.width; x += side) {
             const Region region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, classification_->may_be_opaque());
-            draw(image, region, quality.order_per_pixel, statistics);
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, drawing != Drawing::nearest_surfaces && may_be_opaque());
+            draw(image, region, drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }
     statistics.ms.total = total.ms();
@@ -186,8 +199,8 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     statistics.backend_version = instruction_set() + ", " + std::to_string(oneapi::tbb::this_task_arena::max_concurrency()) +
                                  (oneapi::tbb::this_task_arena::max_concurrency() == 1 ? " thread" : " threads");
     if (out) {  // the proof of the order is no part of the frame
-        if (quality.order_per_pixel) {
-            statistics.order = "pixel";
+        if (drawing != Drawing::by_cells) {
+            statistics.order = drawing == Drawing::by_pixels ? "pixel" : "none";
             statistics.order_exact = true;
         } else {
             prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
@@ -197,16 +210,23 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     return image;
 }
 
+bool CpuRenderer::may_be_opaque() const {
+    const PreparedSurfaces* surfaces = prepared_->surfaces();
+    const auto is_opaque = [](const IsoSurface& surface) { return surface.opacity == 1; };
+    return classification_->may_be_opaque() ||
+           (surfaces && std::ranges::any_of(surfaces->scene().isosurfaces.surfaces(), is_opaque));
+}
+
 // Slab by slab from the front, each tile by one task: the same order of operations for any number of threads.
-void CpuRenderer::draw(Image& image, const Region& region, bool order_per_pixel, Statistics& statistics) {
+void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics) {
     const int columns = (region.width + tile_side - 1) / tile_side, rows = (region.height + tile_side - 1) / tile_side;
     std::atomic<std::size_t> fragments = 0;
     for (;;) {
         const Stopwatch filling;
-        const bool some = order_per_pixel ? bins_.next_tiles() : bins_.next();
+        const bool some = drawing == Drawing::by_pixels ? bins_.next_tiles() : bins_.next();
         statistics.ms.project += filling.ms();
         if (!some) break;
-        const Stopwatch drawing;
+        const Stopwatch tiles;
         oneapi::tbb::parallel_for(
             0, columns * rows,
             [&](int index) {
@@ -214,14 +234,25 @@ void CpuRenderer::draw(Image& image, const Region& region, bool order_per_pixel,
                 const auto items = bins_.tile(column, row);
                 if (items.empty()) return;
                 const int x = region.x + column * tile_side, y = region.y + row * tile_side;
-                const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
-                                static_cast<std::size_t>(image.width), &bins_.full(column, row)};
-                fragments += order_per_pixel
-                                 ? draw_tile_by_pixels(mesh_.cells(), classification_->shading(), tile, items, pending_.local())
-                                 : draw_tile(mesh_.cells(), classification_->shading(), tile, items);
+                Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
+                          static_cast<std::size_t>(image.width), &bins_.full(column, row)};
+                if (prepared_->surfaces())
+                    tile.trails = &trails_[static_cast<std::size_t>(y) * tile.stride + static_cast<std::size_t>(x)];
+                switch (drawing) {
+                    case Drawing::by_cells:
+                        fragments += draw_tile(mesh_.cells(), classification_->shading(), tile, items);
+                        break;
+                    case Drawing::by_pixels:
+                        fragments += draw_tile_by_pixels(mesh_.cells(), classification_->shading(), tile, items, pending_.local());
+                        break;
+                    case Drawing::nearest_surfaces:
+                        tile.full = nullptr;  // what comes later may be nearer
+                        fragments += draw_nearest_surfaces(mesh_.cells(), tile, items);
+                        break;
+                }
             },
             oneapi::tbb::simple_partitioner());
-        statistics.ms.draw += drawing.ms();
+        statistics.ms.draw += tiles.ms();
     }
     statistics.counts.fragments += fragments;
 }

@@ -25,7 +25,10 @@ struct Fragments {
     HWY_ALIGN List key;                                               // for pixels that sort: the middle's nearness
     HWY_ALIGN std::int32_t pixel[capacity + CellPlanes::columns];     // x + tile_side·y
     std::size_t count = 0;
+    HWY_ALIGN List near_front, near_back;                             // with isosurfaces: whole nearness of both ends
 };
+
+struct SurfaceTile;  // surface_drawing-inl.hpp, as what is declared with it
 
 // What a task needs while it draws a tile.
 struct TileState {
@@ -36,7 +39,17 @@ struct TileState {
     Fragments fragments;
     CellPlanes planes;
     Corners corners;
+    SurfaceTile* surfaces = nullptr;                 // with isosurfaces
 };
+
+template <bool perspective>
+float margin_of(const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item);
+template <bool perspective>
+void complete_fragments(const ScreenCells& cells, std::uint32_t item, std::size_t begin, TileState& tile);
+template <bool perspective, class D>
+void composite_with_surfaces(D d, const ScreenCells& cells, const Shading& shading, TileState& tile);
+void append_ends(const TileState& tile, PendingFragments& pending);
+void set_ends(const SurfaceEnds& ends, std::size_t fragment, TileState& tile);
 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE LightOf<V> shade(D d, const Shading& shading, bool constant, V s_f, V s_b, V length) {
@@ -46,33 +59,44 @@ HWY_INLINE LightOf<V> shade(D d, const Shading& shading, bool constant, V s_f, V
     return shading.half_opacity ? half_opacity(d, light) : light;
 }
 
-// Composites the fragments behind what is there, in their order, and forgets them.
+// The last vector of fragments may be part empty.
 template <class D>
-HWY_NOINLINE void composite(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
-    const hn::RebindToSigned<D> di;
-    using V = hn::Vec<D>;
-    Fragments& f = tile.fragments;
-    const std::size_t lanes = hn::Lanes(d);
-    const bool constant = !cells.cell_scalars.empty();
-    const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-    for (std::size_t i = 0; i < lanes; ++i) {  // the last vector may be part empty
+HWY_INLINE void empty_last_vector(D d, Fragments& f) {
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
         f.front[f.count + i] = f.back[f.count + i] = f.length[f.count + i] = 0.0F;
         f.pixel[f.count + i] = 0;
     }
+}
+
+// The light of a vector of fragments.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LightOf<V> light_of_fragments(D d, const ScreenCells& cells, const Shading& shading, const TileState& tile, const Fragments& f,
+                                         std::size_t begin) {
+    const hn::RebindToSigned<D> di;
+    const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+    V length = hn::Load(d, f.length + begin);
+    if (cells.view.perspective) {  // from the axis to the ray
+        const auto unit = hn::Set(d, cells.view.unit_per_pixel);
+        const auto pixel = hn::Load(di, f.pixel + begin);
+        const V x = hn::Add(hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_side - 1))), hn::Set(d, tile.x));
+        const V y = hn::Add(hn::ConvertTo(d, hn::ShiftRight<5>(pixel)), hn::Set(d, tile.y));
+        const V u = hn::Mul(x, unit), v = hn::Mul(y, unit);
+        length = hn::Mul(length, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
+    }
+    const V s_f = hn::Min(hn::Max(hn::Load(d, f.front + begin), zero), one);
+    const V s_b = hn::Min(hn::Max(hn::Load(d, f.back + begin), zero), one);
+    return shade(d, shading, !cells.cell_scalars.empty(), s_f, s_b, length);
+}
+
+// Composites the fragments behind what is there, in their order, and forgets them.
+template <class D>
+HWY_NOINLINE void composite(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
+    Fragments& f = tile.fragments;
+    const std::size_t lanes = hn::Lanes(d);
+    empty_last_vector(d, f);
     HWY_ALIGN float light[4 * CellPlanes::columns];
-    const auto unit = hn::Set(d, cells.view.unit_per_pixel);
     for (std::size_t begin = 0; begin < f.count; begin += lanes) {
-        V length = hn::Load(d, f.length + begin);
-        if (cells.view.perspective) {  // from the axis to the ray
-            const auto pixel = hn::Load(di, f.pixel + begin);
-            const V x = hn::Add(hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_side - 1))), hn::Set(d, tile.x));
-            const V y = hn::Add(hn::ConvertTo(d, hn::ShiftRight<5>(pixel)), hn::Set(d, tile.y));
-            const V u = hn::Mul(x, unit), v = hn::Mul(y, unit);
-            length = hn::Mul(length, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
-        }
-        const V s_f = hn::Min(hn::Max(hn::Load(d, f.front + begin), zero), one);
-        const V s_b = hn::Min(hn::Max(hn::Load(d, f.back + begin), zero), one);
-        const LightOf<V> l = shade(d, shading, constant, s_f, s_b, length);
+        const auto l = light_of_fragments(d, cells, shading, tile, f, begin);
         hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
         const std::size_t end = HWY_MIN(lanes, f.count - begin);
         for (std::size_t i = 0; i < end; ++i) {
@@ -84,9 +108,19 @@ HWY_NOINLINE void composite(D d, const ScreenCells& cells, const Shading& shadin
     f.count = 0;
 }
 
+template <bool perspective, bool surfaces, class D>
+HWY_INLINE void composite_all(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
+    if constexpr (surfaces) {
+        composite_with_surfaces<perspective>(d, cells, shading, tile);
+    } else {
+        composite(d, cells, shading, tile);
+    }
+}
+
 // The fragments of one cell of the group.
-template <bool perspective, bool constant, bool keyed, class D>
-HWY_INLINE void add_fragments(D d, const View& view, const CellPlanes& cell, std::size_t k, TileState& tile) {
+// `margin`, with isosurfaces: how much thinner than nothing a segment may be.
+template <bool perspective, bool constant, bool keyed, bool surfaces, class D>
+HWY_INLINE void add_fragments(D d, const View& view, const CellPlanes& cell, std::size_t k, TileState& tile, float margin = 0.0F) {
     const hn::RebindToSigned<D> di;
     const hn::RebindToUnsigned<D> du;
     using V = hn::Vec<D>;
@@ -122,7 +156,7 @@ HWY_INLINE void add_fragments(D d, const View& view, const CellPlanes& cell, std
                 back = hn::IfThenElse(towards_eye[face], back, hn::Max(back, n));
             }
             const auto in_box = hn::And(hn::Lt(step_x, hn::Set(d, static_cast<float>(width - x))), hn::Lt(step_y, inside_y));
-            const auto hit = hn::And(hn::Gt(front, back), in_box);
+            const auto hit = hn::And(hn::Gt(surfaces ? hn::Add(front, hn::Set(d, margin)) : front, back), in_box);
             const std::size_t hits = hn::CountTrue(d, hit);
             if (hits == 0) continue;
 
@@ -140,6 +174,11 @@ HWY_INLINE void add_fragments(D d, const View& view, const CellPlanes& cell, std
             if constexpr (keyed) {
                 const V middle = hn::MulAdd(hn::Set(d, 0.5F), hn::Add(front, back), hn::Set(d, cell.base[k]));
                 hn::StoreU(hn::Compress(middle, hit), d, f.key + f.count);
+            }
+            if constexpr (surfaces) {
+                const V base = hn::Set(d, cell.base[k]);
+                hn::StoreU(hn::Compress(hn::Add(base, front), hit), d, f.near_front + f.count);
+                hn::StoreU(hn::Compress(hn::Add(base, back), hit), d, f.near_back + f.count);
             }
             const int first_pixel = cell.left[k] + x + tile_side * (cell.top[k] + y);
             hn::StoreU(hn::Compress(hn::Add(lane_pixel, hn::Set(di, first_pixel)), hn::RebindMask(di, hit)), di, f.pixel + f.count);
@@ -160,6 +199,18 @@ HWY_INLINE void add_fragments(D d, const View& view, const CellPlanes& cell, std
             }
             f.count += hits;
         }
+    }
+}
+
+// The same for whatever is drawn.
+template <bool perspective, bool constant, bool keyed, bool surfaces, class D>
+HWY_INLINE void add_cell(D d, const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile) {
+    if constexpr (surfaces) {
+        const std::size_t begin = tile.fragments.count;
+        add_fragments<perspective, constant, keyed, true>(d, cells.view, planes, k, tile, margin_of<perspective>(cells, planes, k, item));
+        complete_fragments<perspective>(cells, item, begin, tile);
+    } else {
+        add_fragments<perspective, constant, keyed, false>(d, cells.view, planes, k, tile);
     }
 }
 
@@ -189,7 +240,7 @@ HWY_INLINE void prefetch_points(const ScreenCells& cells, const std::uint32_t* i
         for (const VertexId v : cells.corners(items[i])) hwy::Prefetch(&cells.points[v]);
 }
 
-template <bool perspective, bool constant>
+template <bool perspective, bool constant, bool surfaces>
 HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, const Tile& target,
                             std::span<const std::uint32_t> items, TileState& tile) {
     const hn::CappedTag<float, CellPlanes::columns> d;
@@ -220,17 +271,17 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
             if (tile.fragments.count + most > Fragments::capacity) {
                 fragments += tile.fragments.count;
                 since_closing += tile.fragments.count;
-                composite(d, cells, shading, tile);
+                composite_all<perspective, surfaces>(d, cells, shading, tile);
                 if (since_closing > 4 * Fragments::capacity) {
                     since_closing = 0;
                     seen = close_pixels(tile, shading.opaque, target.width, target.height);
                 }
             }
-            add_fragments<perspective, constant, false>(d, cells.view, tile.planes, k, tile);
+            add_cell<perspective, constant, false, surfaces>(d, cells, tile.planes, k, group[k], tile);
         }
     }
     fragments += tile.fragments.count;
-    composite(d, cells, shading, tile);
+    composite_all<perspective, surfaces>(d, cells, shading, tile);
     return fragments;
 }
 
@@ -249,18 +300,21 @@ HWY_INLINE void find_nearest(const ScreenCells& cells, std::span<const std::uint
     }
 }
 
-HWY_INLINE void move_to_pending(Fragments& from, PendingFragments& to) {
+template <bool surfaces>
+HWY_INLINE void move_to_pending(TileState& tile, PendingFragments& to) {
+    Fragments& from = tile.fragments;
     const auto append = [&](auto& list, const auto* begin) { list.insert(list.end(), begin, begin + from.count); };
     append(to.front, from.front);
     append(to.back, from.back);
     append(to.length, from.length);
     append(to.key, from.key);
     append(to.pixel, from.pixel);
+    if constexpr (surfaces) append_ends(tile, to);
     from.count = 0;
 }
 
 // Composites the pending fragments whose key is at least `nearest`, pixel by pixel from front to back; the others stay.
-template <class D>
+template <bool perspective, bool surfaces, class D>
 HWY_NOINLINE void composite_pending(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, PendingFragments& pending,
                                   float nearest) {
     constexpr std::size_t pixels = tile_side * tile_side;
@@ -298,23 +352,26 @@ HWY_NOINLINE void composite_pending(D d, const ScreenCells& cells, const Shading
             f.back[f.count] = pending.back[fragment];
             f.length[f.count] = pending.length[fragment];
             f.pixel[f.count] = pending.pixel[fragment];
-            if (++f.count == Fragments::capacity) composite(d, cells, shading, tile);
+            if constexpr (surfaces) set_ends(pending.ends[fragment], f.count, tile);
+            if (++f.count == Fragments::capacity) composite_all<perspective, surfaces>(d, cells, shading, tile);
         }
     }
-    composite(d, cells, shading, tile);
+    composite_all<perspective, surfaces>(d, cells, shading, tile);
     for (std::size_t i = 0; i < count; ++i) {
         if (pending.key[i] >= nearest) continue;
         pending.front[kept] = pending.front[i];
         pending.back[kept] = pending.back[i];
         pending.length[kept] = pending.length[i];
         pending.key[kept] = pending.key[i];
+        if constexpr (surfaces) pending.ends[kept] = pending.ends[i];
         pending.pixel[kept++] = pending.pixel[i];
     }
     for (auto* list : {&pending.front, &pending.back, &pending.length, &pending.key}) list->resize(kept);
     pending.pixel.resize(kept);
+    if constexpr (surfaces) pending.ends.resize(kept);
 }
 
-template <bool perspective, bool constant>
+template <bool perspective, bool constant, bool surfaces>
 HWY_INLINE std::size_t draw_by_pixels(const ScreenCells& cells, const Shading& shading, const Tile& target,
                                       std::span<const std::uint32_t> items, TileState& tile, PendingFragments& pending) {
     const hn::CappedTag<float, CellPlanes::columns> d;
@@ -335,20 +392,20 @@ HWY_INLINE std::size_t draw_by_pixels(const ScreenCells& cells, const Shading& s
             const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
             if (tile.fragments.count + most > Fragments::capacity) {
                 fragments += tile.fragments.count;
-                move_to_pending(tile.fragments, pending);
+                move_to_pending<surfaces>(tile, pending);
             }
-            add_fragments<perspective, constant, true>(d, cells.view, tile.planes, k, tile);
+            add_cell<perspective, constant, true, surfaces>(d, cells, tile.planes, k, of_group[k], tile);
         }
         if (pending.key.size() < enough) continue;
         fragments += tile.fragments.count;
-        move_to_pending(tile.fragments, pending);
-        composite_pending(d, cells, shading, tile, pending, pending.nearest[group + 1]);
+        move_to_pending<surfaces>(tile, pending);
+        composite_pending<perspective, surfaces>(d, cells, shading, tile, pending, pending.nearest[group + 1]);
         seen = close_pixels(tile, shading.opaque, target.width, target.height);
         enough = HWY_MAX(8 * Fragments::capacity, 2 * pending.key.size());
     }
     fragments += tile.fragments.count;
-    move_to_pending(tile.fragments, pending);
-    composite_pending(d, cells, shading, tile, pending, -1e35F);
+    move_to_pending<surfaces>(tile, pending);
+    composite_pending<perspective, surfaces>(d, cells, shading, tile, pending, -1e35F);
     return fragments;
 }
 
