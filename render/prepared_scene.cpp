@@ -176,20 +176,17 @@ PreparedScene::PreparedScene(Scene scene)
     find_visible_cells();
 }
 
-// A flat cell shows its surfaces between its neighbours, which may be flat as well: then all cells are followed.
 void PreparedScene::find_visible_cells() {
     visible_ = find_visible(scene_, units_, bins_, opacity_bins_);
     has_medium_ = std::ranges::find(visible_, std::uint8_t{1}) != visible_.end();
     if (!surfaces_) return;
-    for (CellId cell = 0; cell < visible_.size(); ++cell) {
-        if (!opacity_bins_.empty() && opacity_bins_[cell].low > opacity_bins_[cell].high) continue;  // left out
-        const std::int32_t level = surfaces_->levels()[cell];
-        visible_[cell] |= level == PreparedSurfaces::crossed_cell || (surfaces_->in_flat_cells() && level >= 0);
-    }
+    for (const auto& cells : {surfaces_->crossed(), surfaces_->beside_jumps()})
+        for (const CellId cell : cells)
+            visible_[cell] |= opacity_bins_.empty() || opacity_bins_[cell].low <= opacity_bins_[cell].high;  // else left out
 }
 
 bool PreparedScene::only_opaque_surfaces() const {
-    return surfaces_ && !has_medium_ && !surfaces_->in_flat_cells() && surfaces_->scene().isosurfaces.opaque();
+    return surfaces_ && !has_medium_ && !surfaces_->jump() && surfaces_->scene().isosurfaces.opaque();
 }
 
 double PreparedScene::mean_chord() {

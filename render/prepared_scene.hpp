@@ -57,8 +57,8 @@ public:
     const PreparedSurfaces* surfaces() const { return surfaces_ ? &*surfaces_ : nullptr; }
     // Whether anything but isosurfaces can be seen.
     bool has_medium() const { return has_medium_; }
-    // Whether the nearest surface of each pixel tells its light, so that cells need no order: opaque ones, no medium, and none in flat
-    // cells.
+    // Whether the nearest surface of each pixel tells its light, so that cells need no order: opaque ones, no medium, and none in jumps
+    // of the scalar (PreparedSurfaces::jump).
     bool only_opaque_surfaces() const;
 
     // Another transfer function over the same mesh and field: only the visibility is found anew, for most cells from bins

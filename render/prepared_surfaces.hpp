@@ -38,18 +38,24 @@ public:
     // #T: the level of all scalars of the cell, crossed_cell where its points have several, no_scalar where one is not finite.
     std::span<const std::int32_t> levels() const { return levels_; }
     std::span<const CellId> crossed() const { return crossed_; }  // ascending
-    // Some crossed cell is flat: rays pass it with no length, and its surface lies where the scalar jumps between its neighbours.
-    bool in_flat_cells() const { return in_flat_cells_; }
+
+    // Rays pass a flat cell with no length. Where its scalars lie in no one plane, they jump there from one neighbour to the other, and
+    // surfaces lie in the jump. If there are such cells: all that are not crossed and touch a flat cell, so that it can be seen.
+    std::span<const CellId> beside_jumps() const { return beside_jumps_; }
+    bool jump() const { return jump_; }
 
     // In the axes of the mesh, over the steepest: #T (flat), #P (smooth) or none (unlit). 0 where there is none.
     std::span<const glm::vec3> gradients() const { return gradients_; }
 
 private:
+    void find_jumps(const Scene& scene, const SceneUnits& units, const std::vector<glm::dvec3>& gradients);
+
     const SurfaceScene* scene_;
     std::vector<float> values_;
     std::vector<std::int32_t> levels_;
     std::vector<CellId> crossed_;
-    bool in_flat_cells_ = false;
+    std::vector<CellId> beside_jumps_;
+    bool jump_ = false;
     std::vector<glm::vec3> gradients_;
 };
 

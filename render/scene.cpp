@@ -35,7 +35,7 @@ void validate(const Scene& scene) {
     if (!has_surfaces(scene)) return;
     if (field.location == FieldLocation::cells) {
         throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",
-                     "one on cells, constant in each", "carry it to the points first"});
+                     "one on cells, constant in each", "carry it to the points first (--cell-values averaged)"});
     }
     validate(scene.surfaces->lighting, "lights");
 }

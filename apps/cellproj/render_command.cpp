@@ -212,6 +212,9 @@ void render_pictures(const RenderOptions& options) {
             {"cellproj order", statistics.order},
             {"cellproj backend", statistics.backend + ", " + statistics.backend_version}};
         if (scene.opacity_field) text["cellproj opacity field"] = scene.opacity_field->name;
+        for (const std::string& surface : options.scene.iso.surfaces)
+            text["cellproj isosurfaces"] += "--iso " + surface + " ";
+        if (options.scene.iso.any()) text["cellproj isosurfaces"] += "--shading " + options.scene.iso.shading;
         write(image, file, options, text);
         statistics.ms.write = writing.ms();
         warn(image, statistics, file);

@@ -43,9 +43,12 @@ PreciseCell precise_cell(const ScreenCells& cells, std::uint32_t item) {
                    c = static_cast<std::size_t>(face_corners[k][2]);
         const glm::dvec3 u = cell.points[b] - cell.points[a], v = cell.points[c] - cell.points[a];
         const double z = area(u, v), nx = u.y * v.z - u.z * v.y, ny = u.z * v.x - u.x * v.z;
-        // No slope beyond 1e20, as in cell_planes-inl.hpp: then all products below are finite.
-        const double least = (std::abs(nx) + std::abs(ny)) * 1e-20 + 1e-60;
-        const double inverse = 1.0 / std::copysign(std::max(std::abs(z), least), z);
+        // Seen edge-on within a billionth of a pixel, a face counts as vertical: a ray is on one side of it or on the other. Slopes of
+        // 1e20, as in cell_planes-inl.hpp: then all products below are finite.
+        const double steep = std::abs(nx) + std::abs(ny), deep = std::max({std::abs(u.z), std::abs(v.z), std::abs(u.z - v.z)});
+        const bool vertical = std::abs(z) * deep < 1e-9 * steep;
+        const double inverse = 1.0 / std::copysign(vertical ? 1e-20 * steep + 1e-60 : std::abs(z), z);
+        cell.thin |= std::abs(z) < 3e-4 * (std::abs(u.x) + std::abs(u.y) + std::abs(v.x) + std::abs(v.y));
         cell.nearness[k] = {cell.points[a].z, -nx * inverse, -ny * inverse};
         const double fu = f[b] - f[a], fv = f[c] - f[a];
         const auto bounded = [&](double numerator) { return std::clamp(numerator * inverse, -1e30, 1e30); };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One crossed cell over the screen in float64: what the planes of cell_planes-inl.hpp tell in float32, exactly enough for the sides of
+// One cell over the screen in float64: what the planes of cell_planes-inl.hpp tell in float32, exactly enough for the sides of
 // isosurfaces.
 //
 // Everything is computed face by face from its three corners in the order of their numbers. So at a pixel both cells of a face find
@@ -18,6 +18,10 @@
 
 namespace cellproj::cpu {
 
+// Where in a pixel rays run in float64: beside the centre by so little that nothing is seen of it, and by more than places are rounded. Else
+// rays of meshes that are in line with the pixels would run along faces and edges, where rounding tells who is met. [pixels]
+inline constexpr glm::dvec2 beside_center{5e-10, 2.1e-10};
+
 // The plane of a face over the screen: value + slope · (p − anchor).
 struct ScreenPlane {
     double value, slope_x, slope_y;
@@ -31,6 +35,7 @@ struct PreciseCell {
     std::array<ScreenPlane, 4> nearness, scalar;
     std::array<bool, 4> towards_eye;
     std::array<float, 4> lowest, highest; // scalars
+    bool thin = false;                    // places rounded to float32 do not tell the side of some face: 1e-5 of a pixel, 20 times over
 };
 
 // The corners of the face opposite to corner k of PreciseCell, the first one its anchor.

@@ -4,7 +4,8 @@
 // integrated, then the surface composited, lit. Included once per instruction set, behind Highway; private to kernels.cpp.
 //
 // Met exactly once. A fragment of a cell that no surface crosses has one level at both ends, which no rounding changes. Fragments of
-// crossed cells are found again in float64, where both cells of a face agree on it bit for bit (precise_cell.hpp). And each pixel
+// crossed cells, and of such with faces seen edge-on, are found again in float64, where both cells of a face agree on it bit for bit
+// (precise_cell.hpp). And each pixel
 // remembers the level at which its last fragment ended: where the next one begins at that place with another level (a cell of no
 // thickness lies between, or rounding has its way), the surfaces between are met there. So along a ray levels change without a gap.
 #if defined(CELLPROJ_SURFACE_DRAWING_INL) == defined(HWY_TARGET_TOGGLE)
@@ -26,12 +27,26 @@ struct SurfaceTile {
     Fragments pieces;                       // what the segments are cut into
     std::int32_t hit[Fragments::capacity];  // that ends the piece: of `hits`, or −1
     SurfaceHits hits;
+    PreciseCell cell;                       // the one at hand, if it needs float64
 };
 
-// Where a crossed cell's fragments are looked for: float32 may miss what is thinner than its rounding.
+// Which cells are found again in float64: those that are crossed, and all with a face so steep that float32 does not tell on which side of
+// it a ray is. float32 may have given fragments of the latter to another cell, so that they try every pixel of their box.
+HWY_INLINE Precision precision_of(const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile) {
+    float steepest = 0.0F;
+    for (std::size_t face = 0; face < 4; ++face)
+        steepest = HWY_MAX(steepest, std::abs(planes.slope_x[face][k]) + std::abs(planes.slope_y[face][k]));
+    const bool steep = 1e-4F * steepest > planes.nearest[k] - planes.farthest[k];  // places are rounded to some 1e-5 of a pixel
+    if (!steep && cells.surfaces->levels[item] != PreparedSurfaces::crossed_cell) return Precision::float32;
+    tile.surfaces->cell = precise_cell(cells, item);
+    return steep || tile.surfaces->cell.thin ? Precision::float64_alone : Precision::float64;
+}
+
+// How much thinner than nothing a segment of float32 may be, to be tried in float64.
 template <bool perspective>
-HWY_INLINE float margin_of(const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item) {
-    if (cells.surfaces->levels[item] != PreparedSurfaces::crossed_cell) return 0.0F;
+HWY_INLINE float margin_of(const CellPlanes& planes, std::size_t k, Precision precision) {
+    if (precision == Precision::float32) return 0.0F;
+    if (precision == Precision::float64_alone) return 1e38F;
     return 1e-3F * (planes.nearest[k] - planes.farthest[k]) + 1e-6F * (perspective ? planes.base[k] : 1.0F);
 }
 
@@ -63,7 +78,11 @@ HWY_INLINE PreciseEnds<V> precise_ends(DD dd, const PreciseCell& cell, V x, V y)
     return ends;
 }
 
-// One fragment of a crossed cell, told in float64, as number `to` of the tile; false where it has no length.
+HWY_INLINE glm::dvec2 place_of(const TileState& tile, std::int32_t pixel) {
+    return glm::dvec2(tile.x + static_cast<float>(pixel & (tile_side - 1)), tile.y + static_cast<float>(pixel / tile_side)) + beside_center;
+}
+
+// One fragment, told in float64, as number `to` of the tile; false where it has no length.
 template <bool perspective>
 HWY_INLINE bool write_precisely(const ScreenCells& cells, const PreciseCell& cell, std::uint32_t item, const double (&near)[2],
                                 const double (&scalar)[2], const int (&face)[2], std::int32_t pixel, TileState& tile, std::size_t to) {
@@ -90,7 +109,7 @@ HWY_INLINE bool write_precisely(const ScreenCells& cells, const PreciseCell& cel
     ends.near_front = static_cast<float>(near[0]);
     ends.near_back = static_cast<float>(near[1]);
     if (ends.level_front == ends.level_back) return true;
-    const glm::dvec2 p(static_cast<double>(tile.x) + (pixel & (tile_side - 1)), static_cast<double>(tile.y) + (pixel / tile_side));
+    const glm::dvec2 p = place_of(tile, pixel);
     ends.gradient_front = gradient_on_face(surfaces, cell, item, face[0], p, perspective);
     ends.gradient_back = gradient_on_face(surfaces, cell, item, face[1], p, perspective);
     return true;
@@ -98,10 +117,10 @@ HWY_INLINE bool write_precisely(const ScreenCells& cells, const PreciseCell& cel
 
 // The ends of the item's fragments, from number `begin` on.
 template <bool perspective>
-HWY_NOINLINE void complete_fragments(const ScreenCells& cells, std::uint32_t item, std::size_t begin, TileState& tile) {
+HWY_NOINLINE void complete_fragments(const ScreenCells& cells, std::uint32_t item, Precision precision, std::size_t begin, TileState& tile) {
     Fragments& f = tile.fragments;
-    const std::int32_t level = cells.surfaces->levels[item];
-    if (level != PreparedSurfaces::crossed_cell) {
+    if (precision == Precision::float32) {
+        const std::int32_t level = cells.surfaces->levels[item];
         for (std::size_t i = begin; i < f.count; ++i) {
             SurfaceEnds& ends = tile.surfaces->ends[i];
             ends.item = item;
@@ -111,7 +130,7 @@ HWY_NOINLINE void complete_fragments(const ScreenCells& cells, std::uint32_t ite
         }
         return;
     }
-    const PreciseCell cell = precise_cell(cells, item);
+    const PreciseCell& cell = tile.surfaces->cell;
     const int towards = cell.towards_eye[0] + cell.towards_eye[1] + cell.towards_eye[2] + cell.towards_eye[3];
     const std::size_t end = towards % 4 == 0 ? begin : f.count;  // none where all faces are seen edge-on
     std::size_t kept = begin;
@@ -120,8 +139,8 @@ HWY_NOINLINE void complete_fragments(const ScreenCells& cells, std::uint32_t ite
     const std::size_t lanes = hn::Lanes(dd);
     for (std::size_t i = begin; i < end; i += lanes) {
         const auto pixel = hn::LoadU(di, f.pixel + i);
-        const auto x = hn::Add(hn::Set(dd, static_cast<double>(tile.x)), hn::PromoteTo(dd, hn::And(pixel, hn::Set(di, tile_side - 1))));
-        const auto y = hn::Add(hn::Set(dd, static_cast<double>(tile.y)), hn::PromoteTo(dd, hn::ShiftRight<5>(pixel)));
+        const auto x = hn::Add(hn::Set(dd, static_cast<double>(tile.x) + beside_center.x), hn::PromoteTo(dd, hn::And(pixel, hn::Set(di, tile_side - 1))));
+        const auto y = hn::Add(hn::Set(dd, static_cast<double>(tile.y) + beside_center.y), hn::PromoteTo(dd, hn::ShiftRight<5>(pixel)));
         const auto ends = precise_ends<perspective>(dd, cell, x, y);
         HWY_ALIGN double near[2][8], scalar[2][8], face[2][8];
         HWY_ALIGN std::int32_t pixels[8];
@@ -237,7 +256,7 @@ HWY_INLINE float share_of_way(float s_f, float s_b, float v) {
 template <class D>
 HWY_NOINLINE void add_jump(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, std::int32_t pixel,
                            const SurfaceEnds& ends, PixelTrail& trail) {
-    const glm::dvec2 p(static_cast<double>(tile.x) + (pixel & (tile_side - 1)), static_cast<double>(tile.y) + (pixel / tile_side));
+    const glm::dvec2 p = place_of(tile, pixel);
     const bool rises = trail.level < ends.level_front;
     const glm::vec3 gradient = gradient_at_end(cells, rises ? trail.item : ends.item, p, !rises);
     for_each_crossing(trail.level, ends.level_front, [&](std::int32_t surface, bool rising) HWY_ATTR {
@@ -262,12 +281,16 @@ HWY_NOINLINE void composite_with_surfaces(D d, const ScreenCells& cells, const S
             add_jump(d, cells, shading, tile, pixel, ends, trail);
         if (trail.level == PixelTrail::closed) continue;
         trail = {ends.level_back, ends.near_back, ends.item};
+        // What begins at the near plane has the way from the eye as well, which belongs to the first piece.
+        float before = perspective && ends.near_front > cells.view.near_plane ? 1.0F / ends.near_front : 0.0F;
+        const float way = HWY_MAX(f.length[i] - before, 0.0F);
         float front = f.front[i], share = 0.0F;
         for_each_crossing(ends.level_front, ends.level_back, [&](std::int32_t surface, bool rising) HWY_ATTR {
             const float v = surfaces.values[static_cast<std::size_t>(surface)];
             const float at = share_of_way(f.front[i], f.back[i], v);
             const glm::vec3 gradient = ends.gradient_front + at * (ends.gradient_back - ends.gradient_front);
-            add_piece(d, cells, shading, tile, {front, v, f.length[i] * (at - share), pixel, surface, rising, gradient});
+            add_piece(d, cells, shading, tile, {front, v, before + way * (at - share), pixel, surface, rising, gradient});
+            before = 0.0F;
             front = v;
             share = at;
             const bool opaque = surfaces.materials[static_cast<std::size_t>(surface)].opacity >= 1.0F;
@@ -275,7 +298,7 @@ HWY_NOINLINE void composite_with_surfaces(D d, const ScreenCells& cells, const S
             return !opaque;
         });
         if (trail.level == PixelTrail::closed) continue;
-        add_piece(d, cells, shading, tile, {front, f.back[i], f.length[i] * (1.0F - share), pixel});
+        add_piece(d, cells, shading, tile, {front, f.back[i], before + way * (1.0F - share), pixel});
     }
     f.count = 0;
     composite_pieces(d, cells, shading, tile);

@@ -42,10 +42,12 @@ struct TileState {
     SurfaceTile* surfaces = nullptr;                 // with isosurfaces
 };
 
+enum class Precision { float32, float64, float64_alone };
+Precision precision_of(const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile);
 template <bool perspective>
-float margin_of(const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item);
+float margin_of(const CellPlanes& planes, std::size_t k, Precision precision);
 template <bool perspective>
-void complete_fragments(const ScreenCells& cells, std::uint32_t item, std::size_t begin, TileState& tile);
+void complete_fragments(const ScreenCells& cells, std::uint32_t item, Precision precision, std::size_t begin, TileState& tile);
 template <bool perspective, class D>
 void composite_with_surfaces(D d, const ScreenCells& cells, const Shading& shading, TileState& tile);
 void append_ends(const TileState& tile, PendingFragments& pending);
@@ -207,8 +209,9 @@ template <bool perspective, bool constant, bool keyed, bool surfaces, class D>
 HWY_INLINE void add_cell(D d, const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile) {
     if constexpr (surfaces) {
         const std::size_t begin = tile.fragments.count;
-        add_fragments<perspective, constant, keyed, true>(d, cells.view, planes, k, tile, margin_of<perspective>(cells, planes, k, item));
-        complete_fragments<perspective>(cells, item, begin, tile);
+        const Precision precision = precision_of(cells, planes, k, item, tile);
+        add_fragments<perspective, constant, keyed, true>(d, cells.view, planes, k, tile, margin_of<perspective>(planes, k, precision));
+        complete_fragments<perspective>(cells, item, precision, begin, tile);
     } else {
         add_fragments<perspective, constant, keyed, false>(d, cells.view, planes, k, tile);
     }
