@@ -78,6 +78,8 @@ std::vector<glm::dvec3> gradients_or_nan(const TetMesh& mesh, const ScalarField&
 
 }  // namespace
 
+bool is_flat(const TetMesh& mesh, CellId cell) { return Shape(mesh, cell).is_flat(); }
+
 Gradients cell_gradients(const TetMesh& mesh, const ScalarField& field) {
     Gradients gradients{gradients_or_nan(mesh, field), 0};
     for (glm::dvec3& gradient : gradients.values) {

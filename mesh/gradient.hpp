@@ -22,8 +22,10 @@ struct Gradients {
     std::size_t undefined = 0;       // elements that have none, and 0 instead: named below
 };
 
-// One for each cell. Undefined: cells that are flat, also within the rounding of their own volume (4e-15 of the product of three
-// edges); that touch a scalar which is not finite; whose gradient float64 cannot hold. The field must fit the
+// Whether a cell has no volume, also within the rounding of it: 4e-15 of the product of three edges.
+bool is_flat(const TetMesh& mesh, CellId cell);
+
+// One for each cell. Undefined: cells that are flat; that touch a scalar which is not finite; whose gradient float64 cannot hold. The field must fit the
 // mesh. Parallel over cells, the same for any number of threads.
 Gradients cell_gradients(const TetMesh& mesh, const ScalarField& field);
 

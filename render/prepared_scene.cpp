@@ -171,8 +171,23 @@ std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& uni
 PreparedScene::PreparedScene(Scene scene)
     : scene_(std::move(scene)), units_(find_units(scene_)), sorter_(*scene_.mesh),
       bins_(find_bins(main_field(scene_, units_))),
-      opacity_bins_(scene_.opacity_field ? find_bins(opacity_field(scene_, units_)) : std::vector<BinRange>{}),
-      visible_(find_visible(scene_, units_, bins_, opacity_bins_)) {}
+      opacity_bins_(scene_.opacity_field ? find_bins(opacity_field(scene_, units_)) : std::vector<BinRange>{}) {
+    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_);
+    find_visible_cells();
+}
+
+void PreparedScene::find_visible_cells() {
+    visible_ = find_visible(scene_, units_, bins_, opacity_bins_);
+    has_medium_ = std::ranges::find(visible_, std::uint8_t{1}) != visible_.end();
+    if (!surfaces_) return;
+    for (const auto& cells : {surfaces_->crossed(), surfaces_->beside_jumps()})
+        for (const CellId cell : cells)
+            visible_[cell] |= opacity_bins_.empty() || opacity_bins_[cell].low <= opacity_bins_[cell].high;  // else left out
+}
+
+bool PreparedScene::only_opaque_surfaces() const {
+    return surfaces_ && !has_medium_ && !surfaces_->jump() && surfaces_->scene().isosurfaces.opaque();
+}
 
 double PreparedScene::mean_chord() {
     if (!mean_chord_) mean_chord_ = find_mean_chord(*scene_.mesh, units_.length);
@@ -181,7 +196,17 @@ double PreparedScene::mean_chord() {
 
 void PreparedScene::set_transfer(std::shared_ptr<const TransferFunction> transfer) {
     scene_.transfer = std::move(transfer);
-    visible_ = find_visible(scene_, units_, bins_, opacity_bins_);
+    find_visible_cells();
+}
+
+void PreparedScene::set_surfaces(std::shared_ptr<const SurfaceScene> surfaces) {
+    Scene changed = scene_;
+    changed.surfaces = std::move(surfaces);
+    validate(changed);
+    surfaces_.reset();
+    scene_ = std::move(changed);
+    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_);
+    find_visible_cells();
 }
 
 ViewOrder PreparedScene::order(const Camera& camera, ImageSize size, std::optional<OrderMethod> method, OrderReport* report) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "project/camera.hpp"
+#include "render/prepared_surfaces.hpp"
 #include "render/ray_index.hpp"
 #include "render/scene.hpp"
 #include "render/statistics.hpp"
@@ -50,12 +51,21 @@ public:
     double mean_chord();
 
     // visible()[cell] is 0 for cells that add nothing to any picture: no emission and no extinction over the range of
-    // their scalars, or a scalar of either field that is not finite.
+    // their scalars and no isosurface in them, or a scalar of either field that is not finite.
     const std::vector<std::uint8_t>& visible() const { return visible_; }
+    // Null for scenes that have none.
+    const PreparedSurfaces* surfaces() const { return surfaces_ ? &*surfaces_ : nullptr; }
+    // Whether anything but isosurfaces can be seen.
+    bool has_medium() const { return has_medium_; }
+    // Whether the nearest surface of each pixel tells its light, so that cells need no order: opaque ones, no medium, and none in jumps
+    // of the scalar (PreparedSurfaces::jump).
+    bool only_opaque_surfaces() const;
 
     // Another transfer function over the same mesh and field: only the visibility is found anew, for most cells from bins
     // of the field's range.
     void set_transfer(std::shared_ptr<const TransferFunction> transfer);
+    // Other isosurfaces, or other shading or lights of them; null: none. Throws Error as `validate` does, and then nothing has changed.
+    void set_surfaces(std::shared_ptr<const SurfaceScene> surfaces);
 
     // The bins of a cell's lowest and highest scalar; low > high where one is not finite.
     struct BinRange {
@@ -63,12 +73,16 @@ public:
     };
 
 private:
+    void find_visible_cells();
+
     Scene scene_;
     SceneUnits units_;
     VisibilitySorter sorter_;
     std::optional<double> mean_chord_;  // once somebody has asked
     std::unique_ptr<const RayIndex> ray_index_;  // once an order was to be judged
     std::vector<BinRange> bins_, opacity_bins_;  // #T; none without an opacity field
+    std::optional<PreparedSurfaces> surfaces_;
+    bool has_medium_ = true;
     std::vector<std::uint8_t> visible_;
 };
 

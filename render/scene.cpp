@@ -12,8 +12,6 @@ namespace cellproj {
 
 namespace {
 
-bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
-
 void validate(const TetMesh& mesh, const ScalarField& field) {
     const std::size_t rows = field.location == FieldLocation::points ? mesh.points.size() : mesh.tets.size();
     if (field.values.size() != rows) {
@@ -27,6 +25,8 @@ void validate(const TetMesh& mesh, const ScalarField& field) {
 
 }  // namespace
 
+bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
+
 void validate(const Scene& scene) {
     assert(scene.mesh && scene.field && scene.transfer);
     const ScalarField& field = *scene.field;
@@ -35,7 +35,7 @@ void validate(const Scene& scene) {
     if (!has_surfaces(scene)) return;
     if (field.location == FieldLocation::cells) {
         throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",
-                     "one on cells, constant in each", "carry it to the points first"});
+                     "one on cells, constant in each", "carry it to the points first (--cell-values averaged)"});
     }
     validate(scene.surfaces->lighting, "lights");
 }
@@ -44,7 +44,7 @@ void refuse_surfaces(const Scene& scene, const std::string& backend) {
     if (!has_surfaces(scene)) return;
     throw Error({ErrorKind::option, backend, "a scene without isosurfaces",
                  std::to_string(scene.surfaces->isosurfaces.surfaces().size()) + " of them",
-                 "leave them out: this renderer does not draw them"});
+                 "use the CPU backend (--backend cpu), which draws them"});
 }
 
 }  // namespace cellproj

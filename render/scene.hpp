@@ -34,6 +34,8 @@ inline FieldsRead fields_read(const Scene& scene) { return scene.opacity_field ?
 // cells, which has none, and for lights out of range.
 void validate(const Scene& scene);
 
+bool has_surfaces(const Scene& scene);
+
 // For renderers that draw no isosurfaces: throws Error (option), naming the backend, when the scene has some.
 void refuse_surfaces(const Scene& scene, const std::string& backend);
 

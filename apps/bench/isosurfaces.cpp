@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Isosurfaces: finding the crossings of segments by list and by table for 1 to 1000 of them, gradients, and the judge with and without
-// them. cellproj_bench --benchmark_filter='Iso|Gradients'
+// Isosurfaces: finding the crossings of segments by list and by table for 1 to 1000 of them, gradients, the judge with and without
+// them, and whole frames of the CPU backend. cellproj_bench --benchmark_filter='Iso|Gradients'
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <random>
 #include <vector>
@@ -12,7 +14,12 @@
 #include "apps/scenes/measured_scenes.hpp"
 #include "classify/isosurface.hpp"
 #include "mesh/gradient.hpp"
+#include "mesh/read.hpp"
+#include "mesh/tetrahedralize.hpp"
+#include "render/prepared_surfaces.hpp"
+#include "render/prepared_scene.hpp"
 #include "render/reference.hpp"
+#include "render/renderer.hpp"
 #include "tests/support/meshes.hpp"
 
 namespace {
@@ -117,5 +124,114 @@ void ReferenceWithIsosurfaces(benchmark::State& state) {
         benchmark::DoNotOptimize(reference.picture(camera, {64, 64}).data());
 }
 BENCHMARK(ReferenceWithIsosurfaces)->Arg(0)->Arg(1)->Arg(10)->Arg(100)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
+// ---- Frames of the CPU backend, 512², a new view each. "crossed": cells.
+
+const TransferFunction nothing(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}});
+
+struct Flow {
+    std::shared_ptr<const TetMesh> mesh;
+    std::shared_ptr<const ScalarField> field;
+};
+
+// Density around the blunt fin; nothing where the data is not there.
+const Flow& blunt_fin() {
+    static const Flow flow = [] {
+        const std::filesystem::path folder = std::filesystem::path(CELLPROJ_SHARED_DATA) / "bluntfin";
+        if (!std::filesystem::exists(folder)) return Flow{};
+        auto mesh = std::make_shared<TetMesh>(tetrahedralize(read(folder / "bluntfinxyz.bin", {.solution = folder / "bluntfinq.bin"})));
+        auto field = std::make_shared<ScalarField>(select_scalar(*mesh, "Density", "bluntfin"));
+        return Flow{mesh, field};
+    }();
+    return flow;
+}
+
+const Flow& waves_in(std::int64_t boxes) {
+    static std::int64_t made = 0;
+    static Flow flow;
+    if (made != boxes) {
+        auto mesh = std::make_shared<TetMesh>(testing_support::grid_mesh(static_cast<int>(boxes), 0.2));
+        auto field = std::make_shared<ScalarField>(testing_support::point_field(*mesh, scenes::waves));
+        flow = {mesh, field};
+        made = boxes;
+    }
+    return flow;
+}
+
+Scene scene_of(const Flow& flow, std::vector<IsoSurface> surfaces, Shading shading, const TransferFunction& transfer) {
+    return {flow.mesh, flow.field, std::make_shared<TransferFunction>(transfer),
+            std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::move(surfaces)), shading})};
+}
+
+void draw_frames(benchmark::State& state, const Scene& scene) {
+    const auto renderer = make_renderer(Backend::cpu);
+    renderer->prepare(scene);
+    const Bounds box = bounds(scene.mesh->points);
+    const auto camera = [&](int i) {
+        const double angle = 0.7 + 0.37 * i;
+        return frame_bounds(box, Camera::Projection::perspective, {std::cos(angle), std::sin(angle), 0.4 + 0.3 * std::sin(1.7 * angle)}, {0, 0, 1}, 1.0);
+    };
+    Statistics statistics;
+    int i = 0;
+    for (auto _ : state) benchmark::DoNotOptimize(renderer->render(scene, camera(i++ % 8), {512, 512}, {}, &statistics).pixels.data());
+    const ScalarRange values = range(scene.field->values);
+    const PreparedSurfaces surfaces(scene, SceneUnits{bounds(scene.mesh->points).diagonal() / 2, values.low, values.high});
+    state.counters["crossed"] = static_cast<double>(surfaces.crossed().size());
+    state.counters["fragments"] = static_cast<double>(statistics.counts.fragments);
+}
+
+// At the quantiles of the field, so that each crosses cells.
+std::vector<IsoSurface> at_quantiles(const ScalarField& field, std::int64_t count, double opacity) {
+    std::vector<IsoSurface> surfaces;
+    for (std::int64_t i = 1; i <= count; ++i) {
+        const double value = quantile(field.values, static_cast<double>(i) / static_cast<double>(count + 1));
+        if (surfaces.empty() || value > surfaces.back().value) surfaces.push_back({value, {1, 0.5, 0}, opacity, {}});
+    }
+    return surfaces;
+}
+
+// `count` values so close together that they cross the same cells, but for a few of them.
+std::vector<IsoSurface> in_the_same_cells(const ScalarField& field, std::int64_t count, double opacity) {
+    const double middle = quantile(field.values, 0.5), range = quantile(field.values, 0.99) - quantile(field.values, 0.01);
+    std::vector<IsoSurface> surfaces;
+    for (std::int64_t i = 0; i < count; ++i)
+        surfaces.push_back({middle + 1e-4 * range * static_cast<double>(i) / static_cast<double>(count - 1), {1, 0.5, 0}, opacity, {}});
+    return surfaces;
+}
+
+template <class Surfaces>
+void draw_blunt_fin(benchmark::State& state, Shading shading, bool medium, const Surfaces& surfaces) {
+    if (!blunt_fin().mesh) {
+        state.SkipWithError("no bluntfin in the shared data");
+        return;
+    }
+    draw_frames(state, scene_of(blunt_fin(), surfaces(*blunt_fin().field), shading, medium ? scenes::ramp(0.19, 5, 20) : nothing));
+}
+
+void CpuIsoCount(benchmark::State& state, Shading shading, double opacity, bool medium) {
+    draw_blunt_fin(state, shading, medium, [&](const ScalarField& field) { return at_quantiles(field, state.range(0), opacity); });
+}
+BENCHMARK_CAPTURE(CpuIsoCount, opaque_flat, Shading::flat, 1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoCount, opaque_smooth, Shading::smooth, 1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoCount, translucent_flat, Shading::flat, 0.1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoCount, translucent_smooth, Shading::smooth, 0.1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoCount, medium_smooth, Shading::smooth, 0.1, true)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
+void CpuIsoSameCells(benchmark::State& state, double opacity, bool medium) {
+    draw_blunt_fin(state, Shading::smooth, medium, [&](const ScalarField& field) { return in_the_same_cells(field, state.range(0), opacity); });
+}
+BENCHMARK_CAPTURE(CpuIsoSameCells, opaque, 1, false)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoSameCells, translucent, 0.1, false)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoSameCells, medium, 0.1, true)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
+// Three opaque surfaces alone, by the nearest one of each pixel, against the path of mixed scenes: a medium that nobody sees. 67 boxes
+// along an edge: 1.5M tetrahedra.
+void CpuIsoOpaqueAlone(benchmark::State& state, bool mixed) {
+    const std::vector<IsoSurface> surfaces{{0.3}, {0.5}, {0.7}};
+    const TransferFunction thin(OpticalModel::density, {{0, glm::dvec3(1)}}, {{0, 1e-30}});
+    draw_frames(state, scene_of(waves_in(state.range(0)), surfaces, Shading::smooth, mixed ? thin : nothing));
+}
+BENCHMARK_CAPTURE(CpuIsoOpaqueAlone, nearest, false)->Arg(34)->Arg(67)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoOpaqueAlone, mixed, true)->Arg(34)->Arg(67)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 }  // namespace

@@ -220,6 +220,9 @@ void render_pictures(const RenderOptions& options) {
             {"cellproj backend", statistics.backend + ", " + statistics.backend_version}};
         if (scene.opacity_field) text["cellproj opacity field"] = scene.opacity_field->name;
         if (!annotator.note().empty()) text["cellproj note"] = annotator.note();
+        for (const std::string& surface : options.scene.iso.surfaces)
+            text["cellproj isosurfaces"] += "--iso " + surface + " ";
+        if (options.scene.iso.any()) text["cellproj isosurfaces"] += "--shading " + options.scene.iso.shading;
         warn(image, statistics, file);
         write(annotator.compose(std::move(image), cameras[i]), file, options, text);
         statistics.ms.write = writing.ms();
@@ -238,6 +241,7 @@ void add_render_command(CLI::App& app) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a mesh to a picture.");
     add_scene_options(*command, options->scene);
+    add_iso_options(*command, options->scene.iso);
     command->add_option("-o,--output", options->output, "The picture: .png or .exr; several become NAME_000.png …")
         ->required();
     add_annotation_options(*command, options->annotations);

@@ -101,6 +101,16 @@ void check_colors(const SceneOptions& options) {
     }
 }
 
+// Isosurfaces alone are what is asked for unless something tells of the volume around them: its colours are then theirs.
+void add_surfaces(const SceneOptions& options, Scene& scene) {
+    auto surfaces = std::make_shared<const SurfaceScene>(parse_surfaces(options.iso, *scene.transfer));
+    warn_of_missing(surfaces->isosurfaces, *scene.field);
+    scene.surfaces = std::move(surfaces);
+    if (options.iso.volume || options.opacity_chosen) return;
+    const TransferFunction nothing(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}});
+    scene.transfer = std::make_shared<const TransferFunction>(nothing);
+}
+
 // Cell fields are exact as constants; averaged to the points they look smooth.
 ScalarField load_field(const SceneOptions& options, const Input& input, const std::string& name) {
     ScalarField field = select_scalar(*input.mesh, name, input.name);
@@ -128,6 +138,7 @@ SceneOptions::SceneOptions() : colors(preset_names().front()) {}
 
 ImageSize require_possible(const SceneOptions& options) {
     check_colors(options);
+    parse_surfaces(options.iso, TransferFunction(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}}));
     return parse_size(options.size);
 }
 
@@ -144,6 +155,7 @@ LoadedScene load_scene(const SceneOptions& options) {
                 .field = field,
                 .transfer = choose_transfer(options, input, *field, opacity.get()),
                 .opacity_field = opacity};
+    if (options.iso.any()) add_surfaces(options, scene);
     return {std::move(input), std::move(scene)};
 }
 
@@ -173,7 +185,7 @@ std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& inp
 void add_scene_options(CLI::App& command, SceneOptions& options) {
     add_input_options(command, options.input);
     command.add_option("--field", options.field, "The field to draw (default: the one that info suggests); vectors by magnitude, or U:x; Points:z: a coordinate");
-    command.add_option("--opacity-field", options.opacity_field,
+    CLI::Option* opacity_field = command.add_option("--opacity-field", options.opacity_field,
                        "Read opacity over this field, and only colour over --field; default opacity: rising over the field's 1-99 % range");
     command.add_option("--cell-values", options.cell_values, "How cell fields are drawn: constant in a cell, or averaged to the points")
         ->check(CLI::IsMember({"constant", "averaged"}))->capture_default_str();
@@ -191,8 +203,11 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
             ->check(CLI::IsMember({"linear", "log"}))->capture_default_str()};
     for (CLI::Option* option : chosen)
         option->excludes(transfer)->each([&options](const std::string&) { options.colors_chosen = true; });
-    command.add_option("--opacity-scale", options.opacity_scale, "Multiplies the extinction of any transfer function")
-        ->check(CLI::Range(0.0, 1e9))->capture_default_str();
+    CLI::Option* opacity_scale =
+        command.add_option("--opacity-scale", options.opacity_scale, "Multiplies the extinction of any transfer function")
+            ->check(CLI::Range(0.0, 1e9))->capture_default_str();
+    for (CLI::Option* option : {transfer, opacity_field, opacity_scale})
+        option->each([&options](const std::string&) { options.opacity_chosen = true; });
     CLI::Option* camera = command.add_option("--camera", options.camera, "Camera or array of cameras (JSON)");
     command.add_option("--from", options.from, "Direction from which the whole mesh is seen: X,Y,Z")
         ->expected(3)->delimiter(',')->capture_default_str()->excludes(camera);

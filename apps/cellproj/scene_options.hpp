@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "input.hpp"
+#include "iso_options.hpp"
 #include "project/camera.hpp"
 #include "render/renderer.hpp"
 #include "render/scene.hpp"
@@ -34,6 +35,8 @@ struct SceneOptions {
     std::vector<double> range;  // empty, or low and high
     double opacity_scale = 1;
     bool colors_chosen = false;  // by any of --colors, --range, --axis
+    IsoOptions iso;
+    bool opacity_chosen = false;  // by --transfer, --opacity-scale or --opacity-field: the medium is asked for
 
     FieldsRead fields() const { return opacity_field.empty() ? FieldsRead::one : FieldsRead::two; }
 };

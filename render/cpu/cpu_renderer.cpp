@@ -59,7 +59,7 @@ public:
             shading_.tables = &*tables_;
         }
         may_be_opaque_ = transfer.max_extinction(0.0, 1.0) * longest_segment > -std::log(hidden);
-        shading_.opaque = may_be_opaque_ ? static_cast<float>(1.0 - hidden) : 1.0F;
+        shading_.opaque = static_cast<float>(1.0 - hidden);
     }
 
     const Shading& shading() const { return shading_; }
@@ -84,7 +84,6 @@ public:
 
     void prepare(const Scene& scene, const Quality& quality) override {
         require_drawn(Backend::cpu, quality, fields_read(scene));
-        refuse_surfaces(scene, "cpu");
         arena_.execute([&] { prepare_here(scene, quality); });
     }
 
@@ -93,14 +92,15 @@ public:
         validate(camera, "camera");
         validate(size, "size");
         require_drawn(Backend::cpu, quality, fields_read(scene));
-        refuse_surfaces(scene, "cpu");
         return arena_.execute([&] { return render_here(scene, camera, size, quality, statistics); });
     }
 
 private:
     void prepare_here(const Scene& scene, const Quality& quality);
     Image render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out);
-    void draw(Image& image, const Region& region, bool order_per_pixel, Statistics& statistics);
+    enum class Drawing { by_cells, by_pixels, nearest_surfaces };
+    void draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics);
+    bool may_be_opaque() const;
 
     oneapi::tbb::task_arena arena_;
     std::optional<PreparedScene> prepared_;
@@ -110,6 +110,7 @@ private:
     ScreenMesh mesh_;
     TileBins bins_;
     std::vector<std::uint8_t> extra_drawn_;
+    std::vector<PixelTrail> trails_;  // with isosurfaces, of the picture's pixels
     oneapi::tbb::enumerable_thread_specific<PendingFragments> pending_;
 };
 
@@ -124,6 +125,13 @@ void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
         mesh_.set_visible();
+    }
+    if (same_cells && prepared_->scene().surfaces != scene.surfaces) {
+        prepared_->set_surfaces(scene.surfaces);
+        mesh_.set_visible();
+        mesh_.set_surfaces();
+    } else if (same_cells && !same_transfer) {
+        mesh_.set_surfaces();  // with or without a medium
     }
     const bool same_method = classification_ && method_ == quality.method;
     if (same_transfer && same_method && classified_) return;
@@ -160,10 +168,15 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     const Stopwatch sort;
     OrderReport order_report;
     ViewOrder order;
+    const Drawing drawing = prepared_->only_opaque_surfaces() ? Drawing::nearest_surfaces
+                            : quality.order_per_pixel         ? Drawing::by_pixels
+                                                              : Drawing::by_cells;
     oneapi::tbb::parallel_invoke(
         [&] {
             // Pixels that sort their own fragments want cells nearly sorted, no more.
-            order = prepared_->order(camera, size, quality.order_per_pixel ? OrderMethod::centroid : quality.order, &order_report);
+            const auto method = drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order;
+            order = drawing == Drawing::nearest_surfaces ? ViewOrder{prepared_->surfaces()->crossed(), {}}
+                                                         : prepared_->order(camera, size, method, &order_report);
         },
         [&] {
             mesh_.set_view(camera, size);
@@ -174,13 +187,14 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     const Stopwatch projecting;
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
+    if (prepared_->surfaces()) trails_.assign(image.pixels.size(), {});
     statistics.ms.project = projecting.ms();
 
     for (int y = 0; y < size.height; y += first.height)
         for (int x = 0; x < size.width; x += first.width) {
             const Region region = region_at(x, y);
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, classification_->may_be_opaque());
-            draw(image, region, quality.order_per_pixel, statistics);
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, drawing != Drawing::nearest_surfaces && may_be_opaque());
+            draw(image, region, drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }
     statistics.ms.total = total.ms();
@@ -199,8 +213,8 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     statistics.backend_version = instruction_set() + ", " + std::to_string(oneapi::tbb::this_task_arena::max_concurrency()) +
                                  (oneapi::tbb::this_task_arena::max_concurrency() == 1 ? " thread" : " threads");
     if (out) {  // the proof of the order is no part of the frame
-        if (quality.order_per_pixel) {
-            statistics.order = "pixel";
+        if (drawing != Drawing::by_cells) {
+            statistics.order = drawing == Drawing::by_pixels ? "pixel" : "none";
             statistics.order_exact = true;
         } else {
             prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
@@ -210,16 +224,25 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     return image;
 }
 
+bool CpuRenderer::may_be_opaque() const {
+    const PreparedSurfaces* surfaces = prepared_->surfaces();
+    const auto is_opaque = [](const IsoSurface& surface) { return surface.opacity == 1; };
+    return classification_->may_be_opaque() ||
+           (surfaces && std::ranges::any_of(surfaces->scene().isosurfaces.surfaces(), is_opaque));
+}
+
 // Slab by slab from the front, each tile by one task: the same order of operations for any number of threads.
-void CpuRenderer::draw(Image& image, const Region& region, bool order_per_pixel, Statistics& statistics) {
+void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics) {
     const int columns = (region.width + tile_side - 1) / tile_side, rows = (region.height + tile_side - 1) / tile_side;
+    Shading shading = classification_->shading();
+    if (!may_be_opaque()) shading.opaque = 1.0F;
     std::atomic<std::size_t> fragments = 0;
     for (;;) {
         const Stopwatch filling;
-        const bool some = order_per_pixel ? bins_.next_tiles() : bins_.next();
+        const bool some = drawing == Drawing::by_pixels ? bins_.next_tiles() : bins_.next();
         statistics.ms.project += filling.ms();
         if (!some) break;
-        const Stopwatch drawing;
+        const Stopwatch tiles;
         oneapi::tbb::parallel_for(
             0, columns * rows,
             [&](int index) {
@@ -227,14 +250,25 @@ void CpuRenderer::draw(Image& image, const Region& region, bool order_per_pixel,
                 const auto items = bins_.tile(column, row);
                 if (items.empty()) return;
                 const int x = region.x + column * tile_side, y = region.y + row * tile_side;
-                const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
-                                static_cast<std::size_t>(image.width), &bins_.full(column, row)};
-                fragments += order_per_pixel
-                                 ? draw_tile_by_pixels(mesh_.cells(), classification_->shading(), tile, items, pending_.local())
-                                 : draw_tile(mesh_.cells(), classification_->shading(), tile, items);
+                Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
+                          static_cast<std::size_t>(image.width), &bins_.full(column, row)};
+                if (prepared_->surfaces())
+                    tile.trails = &trails_[static_cast<std::size_t>(y) * tile.stride + static_cast<std::size_t>(x)];
+                switch (drawing) {
+                    case Drawing::by_cells:
+                        fragments += draw_tile(mesh_.cells(), shading, tile, items);
+                        break;
+                    case Drawing::by_pixels:
+                        fragments += draw_tile_by_pixels(mesh_.cells(), shading, tile, items, pending_.local());
+                        break;
+                    case Drawing::nearest_surfaces:
+                        tile.full = nullptr;  // what comes later may be nearer
+                        fragments += draw_nearest_surfaces(mesh_.cells(), tile, items);
+                        break;
+                }
             },
             oneapi::tbb::simple_partitioner());
-        statistics.ms.draw += drawing.ms();
+        statistics.ms.draw += tiles.ms();
     }
     statistics.counts.fragments += fragments;
 }

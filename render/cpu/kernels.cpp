@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/cpu/kernels.hpp"
 
+#include "render/cpu/precise_cell.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -23,6 +25,8 @@
 #include "render/cpu/table_light-inl.hpp"
 #include "render/cpu/cell_planes-inl.hpp"
 #include "render/cpu/tile_drawing-inl.hpp"
+#include "render/cpu/surface_light-inl.hpp"
+#include "render/cpu/surface_drawing-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cellproj::cpu::HWY_NAMESPACE {
@@ -87,24 +91,57 @@ HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Shading& shading,
     return fragments;
 }
 
+// The same with the pixels' trails.
+template <class Draw>
+HWY_NOINLINE std::size_t on_tile_with_surfaces(const ScreenCells& cells, const Shading& shading, const Tile& target, const Draw& draw_as) {
+    SurfaceTile surfaces;
+    const auto row_bytes = static_cast<std::size_t>(target.width) * sizeof(PixelTrail);
+    const auto row = [&](int y) HWY_ATTR { return target.trails + static_cast<std::size_t>(y) * target.stride; };
+    for (int y = 0; y < target.height; ++y) std::memcpy(&surfaces.trails[tile_side * y], row(y), row_bytes);
+    const std::size_t fragments = on_tile(cells, shading, target, [&](TileState& tile) HWY_ATTR {
+        tile.surfaces = &surfaces;
+        return draw_as(tile);
+    });
+    for (int y = 0; y < target.height; ++y) std::memcpy(row(y), &surfaces.trails[tile_side * y], row_bytes);
+    return fragments;
+}
+
 std::size_t DrawTile(const ScreenCells& cells, const Shading& shading, const Tile& target, std::span<const std::uint32_t> items) {
     const bool perspective = cells.view.perspective, constant = !cells.cell_scalars.empty();
+    if (cells.surfaces)
+        return on_tile_with_surfaces(cells, shading, target, [&](TileState& tile) HWY_ATTR {
+            return perspective ? draw<true, false, true>(cells, shading, target, items, tile)
+                               : draw<false, false, true>(cells, shading, target, items, tile);
+        });
     return on_tile(cells, shading, target, [&](TileState& tile) HWY_ATTR {
         if (perspective)
-            return constant ? draw<true, true>(cells, shading, target, items, tile) : draw<true, false>(cells, shading, target, items, tile);
-        return constant ? draw<false, true>(cells, shading, target, items, tile) : draw<false, false>(cells, shading, target, items, tile);
+            return constant ? draw<true, true, false>(cells, shading, target, items, tile)
+                            : draw<true, false, false>(cells, shading, target, items, tile);
+        return constant ? draw<false, true, false>(cells, shading, target, items, tile)
+                        : draw<false, false, false>(cells, shading, target, items, tile);
     });
 }
 
 std::size_t DrawTileByPixels(const ScreenCells& cells, const Shading& shading, const Tile& target, std::span<const std::uint32_t> items,
                              PendingFragments& pending) {
     const bool perspective = cells.view.perspective, constant = !cells.cell_scalars.empty();
+    if (cells.surfaces)
+        return on_tile_with_surfaces(cells, shading, target, [&](TileState& tile) HWY_ATTR {
+            return perspective ? draw_by_pixels<true, false, true>(cells, shading, target, items, tile, pending)
+                               : draw_by_pixels<false, false, true>(cells, shading, target, items, tile, pending);
+        });
     return on_tile(cells, shading, target, [&](TileState& tile) HWY_ATTR {
         if (perspective)
-            return constant ? draw_by_pixels<true, true>(cells, shading, target, items, tile, pending)
-                            : draw_by_pixels<true, false>(cells, shading, target, items, tile, pending);
-        return constant ? draw_by_pixels<false, true>(cells, shading, target, items, tile, pending)
-                        : draw_by_pixels<false, false>(cells, shading, target, items, tile, pending);
+            return constant ? draw_by_pixels<true, true, false>(cells, shading, target, items, tile, pending)
+                            : draw_by_pixels<true, false, false>(cells, shading, target, items, tile, pending);
+        return constant ? draw_by_pixels<false, true, false>(cells, shading, target, items, tile, pending)
+                        : draw_by_pixels<false, false, false>(cells, shading, target, items, tile, pending);
+    });
+}
+
+std::size_t DrawNearestSurfaces(const ScreenCells& cells, const Tile& target, std::span<const std::uint32_t> items) {
+    return on_tile_with_surfaces(cells, {}, target, [&](TileState& tile) HWY_ATTR {
+        return cells.view.perspective ? draw_nearest<true>(cells, target, items, tile) : draw_nearest<false>(cells, target, items, tile);
     });
 }
 
@@ -134,6 +171,7 @@ namespace cellproj::cpu {
 HWY_EXPORT(FindBoxes);
 HWY_EXPORT(DrawTile);
 HWY_EXPORT(DrawTileByPixels);
+HWY_EXPORT(DrawNearestSurfaces);
 HWY_EXPORT(LightOfSegments);
 
 void find_boxes(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, std::span<TileBox> boxes) {
@@ -150,6 +188,11 @@ std::size_t draw_tile_by_pixels(const ScreenCells& cells, const Shading& shading
                                 std::span<const std::uint32_t> items, PendingFragments& pending) {
     assert(tile.width <= tile_side && tile.height <= tile_side);
     return HWY_DYNAMIC_DISPATCH(DrawTileByPixels)(cells, shading, tile, items, pending);
+}
+
+std::size_t draw_nearest_surfaces(const ScreenCells& cells, const Tile& tile, std::span<const std::uint32_t> items) {
+    assert(tile.width <= tile_side && tile.height <= tile_side && cells.surfaces && tile.trails && !tile.full);
+    return HWY_DYNAMIC_DISPATCH(DrawNearestSurfaces)(cells, tile, items);
 }
 
 void light_of_segments(const Shading& shading, bool constant, std::span<const float> s_f, std::span<const float> s_b,

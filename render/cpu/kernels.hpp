@@ -19,6 +19,7 @@
 #include "mesh/tet_mesh.hpp"
 #include "render/cpu/method_tables.hpp"
 #include "render/cpu/piece_arrays.hpp"
+#include "render/cpu/screen_surfaces.hpp"
 
 namespace cellproj::cpu {
 
@@ -53,6 +54,7 @@ struct ScreenCells {
     std::span<const std::array<VertexId, 4>> extra;
     std::span<const float> cell_scalars;             // #T + #extra, 0..1; empty for fields on points
     std::span<const std::uint8_t> visible;           // #T, 0 for cells that are left out; empty when there are none
+    const ScreenSurfaces* surfaces = nullptr;        // null: no isosurfaces
 
     const std::array<VertexId, 4>& corners(std::uint32_t item) const {
         return item < tets.size() ? tets[item] : extra[item - tets.size()];
@@ -93,16 +95,26 @@ struct Tile {
     glm::vec4* pixels;        // the picture's pixel (x, y)
     std::size_t stride;       // pixels from row to row
     std::uint8_t* full = nullptr;  // set to 1 when nothing more can be seen behind what the tile holds
+    PixelTrail* trails = nullptr;  // with isosurfaces: of the pixels, from one drawing of the tile to the next; `stride` as theirs
 };
 
 // Composites items, given from back to front, behind what the tile holds already, until nothing can be seen any more. Returns the
 // number of fragments: segments that have a length.
 std::size_t draw_tile(const ScreenCells& cells, const Shading& shading, const Tile& tile, std::span<const std::uint32_t> items);
 
+// Where a fragment enters and leaves its cell, as far as isosurfaces care.
+struct SurfaceEnds {
+    std::uint32_t item;
+    std::int32_t level_front, level_back;        // of its scalars (PreparedSurfaces)
+    float near_front, near_back;                 // whole nearness
+    glm::vec3 gradient_front, gradient_back;     // for normals, where both levels differ
+};
+
 // Fragments that wait until no cell can put one in front of them any more. Memory of a thread, kept from tile to tile.
 struct PendingFragments {
     std::vector<float> front, back, length, key;
     std::vector<std::int32_t> pixel;
+    std::vector<SurfaceEnds> ends;       // with isosurfaces
     std::vector<float> nearest;          // per group of items: no later one is nearer
     std::vector<std::uint32_t> sorted;   // numbers of fragments, pixel by pixel
 };
@@ -111,6 +123,9 @@ struct PendingFragments {
 // cells stand before nearer ones and the smaller they are, the fewer fragments wait.
 std::size_t draw_tile_by_pixels(const ScreenCells& cells, const Shading& shading, const Tile& tile,
                                 std::span<const std::uint32_t> items, PendingFragments& pending);
+
+// Isosurfaces alone, all of them opaque, of items in any order: the nearest one of each pixel. Returns as draw_tile.
+std::size_t draw_nearest_surfaces(const ScreenCells& cells, const Tile& tile, std::span<const std::uint32_t> items);
 
 // The instruction sets that this build has and this machine can run, best first, by Highway's names ("AVX3", "AVX2", "SSE4" …).
 std::vector<std::string> instruction_sets();

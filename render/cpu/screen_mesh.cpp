@@ -16,7 +16,33 @@ namespace cellproj::cpu {
 namespace {
 
 // Products of such coordinates stay finite in float32; no pixel lies beyond.
-float screen_coordinate(double pixels) { return static_cast<float>(std::clamp(pixels, -1e12, 1e12)); }
+double bounded(double pixels) { return std::clamp(pixels, -1e12, 1e12); }
+float screen_coordinate(double pixels) { return static_cast<float>(bounded(pixels)); }
+
+SurfaceLighting for_tiles(const Lighting& lighting) {
+    SurfaceLighting result{lighting.ambient, static_cast<float>(lighting.exponent), lighting.two_sided, {}};
+    for (const DirectionalLight& light : lighting.lights) {
+        const glm::dvec3 towards = light.towards.value_or(glm::dvec3(1));
+        const double largest = std::max({std::abs(towards.x), std::abs(towards.y), std::abs(towards.z)});  // > 0
+        result.lights.push_back({!light.towards, glm::normalize(towards / largest), light.color * light.diffuse, light.color * light.specular});
+    }
+    return result;
+}
+
+// The corners' weights at a place in the tetrahedron, by volumes; those of its middle where it has none.
+std::array<double, 4> weights_at(const std::array<EyeVertex, 4>& corners, const glm::dvec3& p) {
+    const auto volume = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
+        return glm::dot(glm::cross(b - a, c - a), d - a);
+    };
+    const glm::dvec3 &a = corners[0].position, &b = corners[1].position, &c = corners[2].position, &d = corners[3].position;
+    const double whole = volume(a, b, c, d);
+    std::array<double, 4> weights{volume(p, b, c, d) / whole, volume(a, p, c, d) / whole, volume(a, b, p, d) / whole, volume(a, b, c, p) / whole};
+    double sum = 0;
+    for (double& w : weights) sum += w = std::max(w, 0.0);
+    if (!(sum > 0 && std::isfinite(sum))) return {0.25, 0.25, 0.25, 0.25};
+    for (double& w : weights) w /= sum;
+    return weights;
+}
 
 }  // namespace
 
@@ -36,6 +62,26 @@ void ScreenMesh::set_scene(const PreparedScene& prepared) {
     cells_ = {};
     cells_.tets = mesh.tets;
     set_visible();
+    set_surfaces();
+}
+
+void ScreenMesh::set_surfaces() {
+    const PreparedSurfaces* prepared = prepared_->surfaces();
+    cells_.surfaces = prepared ? &surfaces_ : nullptr;
+    surfaces_ = {};
+    precise_points_.clear();
+    levels_.clear();
+    gradients_.clear();
+    if (!prepared) return;
+    const SurfaceScene& scene = prepared->scene();
+    surfaces_.values = prepared->values();
+    for (const IsoSurface& surface : scene.isosurfaces.surfaces())
+        surfaces_.materials.push_back({surface.color, surface.back_color.value_or(surface.color), static_cast<float>(surface.opacity)});
+    surfaces_.shading = scene.shading;
+    surfaces_.lighting = for_tiles(scene.lighting);
+    surfaces_.medium = prepared_->has_medium();
+    levels_.assign(prepared->levels().begin(), prepared->levels().end());
+    gradients_.assign(prepared->gradients().begin(), prepared->gradients().end());
 }
 
 void ScreenMesh::set_visible() {
@@ -63,12 +109,23 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
     view.unit_per_pixel = static_cast<float>(1.0 / transform_.pixels_per_unit());
 
     points_.resize(mesh.points.size());
+    const bool precise = cells_.surfaces != nullptr;
+    if (precise) {
+        precise_points_.resize(mesh.points.size());
+        const auto turned = [&](const glm::dvec3& axis) { return transform_.to_eye(axis); };
+        const glm::dvec3 x = turned({1, 0, 0}), y = turned({0, 1, 0}), z = turned({0, 0, 1});
+        surfaces_.right = glm::dvec3(x.x, y.x, z.x);
+        surfaces_.down = glm::dvec3(x.y, y.y, z.y);
+        surfaces_.forward = glm::dvec3(x.z, y.z, z.z);
+    }
     std::atomic<bool> near_points = false;
     using Range = oneapi::tbb::blocked_range<std::size_t>;
     oneapi::tbb::parallel_for(Range(0, mesh.points.size(), 4096), [&](const Range& range) {
         bool behind = false;
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            points_[i] = on_screen({transform_.to_eye((mesh.points[i] - eye_) / unit), points_[i].scalar});
+            const glm::dvec3 place = transform_.to_eye((mesh.points[i] - eye_) / unit);
+            points_[i] = on_screen({place, points_[i].scalar});
+            if (precise) precise_points_[i] = precisely_on_screen(place);
             behind |= points_[i].nearness == behind_near_plane;
         }
         if (behind) near_points = true;
@@ -77,10 +134,20 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
     cells_.points = points_;
 }
 
+// Perspective cannot show what lies behind the near plane.
+bool ScreenMesh::has_place(const glm::dvec3& p) const { return !transform_.perspective() || p.z >= near_depth_ * (1.0 - 1e-9); }
+
+// Parallel views have the same nearness as on_screen; in perspective it is not relative to the far side.
+glm::dvec3 ScreenMesh::precisely_on_screen(const glm::dvec3& p) const {
+    if (!has_place(p)) return glm::dvec3(0.0);
+    const glm::dvec2 screen = transform_.to_screen(p) - transform_.principal_point();
+    return {bounded(screen.x), bounded(screen.y), transform_.perspective() ? 1.0 / p.z : base_ - p.z};
+}
+
 ScreenPoint ScreenMesh::on_screen(const EyeVertex& vertex) const {
     const glm::dvec3& p = vertex.position;
     const auto scalar = static_cast<float>(vertex.scalar);
-    if (transform_.perspective() && !(p.z >= near_depth_ * (1.0 - 1e-9))) return {0.0F, 0.0F, behind_near_plane, scalar};
+    if (!has_place(p)) return {0.0F, 0.0F, behind_near_plane, scalar};
     const glm::dvec2 screen = transform_.to_screen(p) - transform_.principal_point();
     const double nearness = transform_.perspective() ? 1.0 / p.z - base_ : base_ - p.z;
     return {screen_coordinate(screen.x), screen_coordinate(screen.y), static_cast<float>(nearness), scalar};
@@ -127,6 +194,21 @@ void ScreenMesh::add_extra(const Corners& corners, CellId cell) {
                                    : std::array{first, first + 1, first + 3, first + 2});
     extra_cells_.push_back(cell);
     if (!cell_scalars_.empty()) cell_scalars_.push_back(static_cast<float>(corners[0].scalar));
+    if (cells_.surfaces) add_surfaces_of_extra(corners, cell);
+}
+
+void ScreenMesh::add_surfaces_of_extra(const Corners& corners, CellId cell) {
+    for (const EyeVertex& corner : corners) precise_points_.push_back(precisely_on_screen(corner.position));
+    levels_.push_back(levels_[cell]);
+    if (surfaces_.shading == SurfaceShading::flat) gradients_.push_back(gradients_[cell]);
+    if (surfaces_.shading != SurfaceShading::smooth) return;
+    const Corners whole = eye_corners(cell);
+    for (const EyeVertex& corner : corners) {
+        const std::array<double, 4> weights = weights_at(whole, corner.position);
+        glm::vec3 gradient(0);
+        for (std::size_t i = 0; i < 4; ++i) gradient += static_cast<float>(weights[i]) * gradients_[cells_.tets[cell][i]];
+        gradients_.push_back(gradient);
+    }
 }
 
 // What of it lies before the near plane, back to front; returns the number of parts.
@@ -146,6 +228,11 @@ std::span<const std::uint32_t> ScreenMesh::cut(const ViewOrder& order) {
     extra_.clear();
     extra_cells_.clear();
     if (!cell_scalars_.empty()) cell_scalars_.resize(cell_count);
+    if (cells_.surfaces) {
+        precise_points_.resize(points_.size());
+        levels_.resize(cell_count);
+        gradients_.resize(prepared_->surfaces()->gradients().size());
+    }
     std::span<const std::uint32_t> items = order.items;
     if (near_points_ || !order.pieces.empty()) {
         items_.clear();
@@ -167,6 +254,9 @@ std::span<const std::uint32_t> ScreenMesh::cut(const ViewOrder& order) {
     cells_.points = points_;
     cells_.extra = extra_;
     cells_.cell_scalars = cell_scalars_;
+    surfaces_.points = precise_points_;
+    surfaces_.levels = levels_;
+    surfaces_.gradients = gradients_;
     return items;
 }
 

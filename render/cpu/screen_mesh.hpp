@@ -13,6 +13,7 @@
 #include "project/camera.hpp"
 #include "project/clip.hpp"
 #include "render/cpu/kernels.hpp"
+#include "render/cpu/screen_surfaces.hpp"
 #include "render/prepared_scene.hpp"
 #include "sort/view_order.hpp"
 
@@ -29,6 +30,8 @@ public:
     void set_scene(const PreparedScene& prepared);
     // Which cells can be seen at all (PreparedScene::visible) may have changed.
     void set_visible();
+    // Isosurfaces (PreparedScene::surfaces), or whether there is a medium around them, may have changed.
+    void set_surfaces();
 
     // All points as a camera sees them. set_scene came before.
     void set_view(const Camera& camera, ImageSize size);
@@ -45,6 +48,9 @@ private:
     using Corners = std::array<EyeVertex, 4>;
 
     ScreenPoint on_screen(const EyeVertex& vertex) const;
+    glm::dvec3 precisely_on_screen(const glm::dvec3& position) const;
+    bool has_place(const glm::dvec3& position) const;
+    void add_surfaces_of_extra(const Corners& corners, CellId cell);
     Corners eye_corners(CellId cell) const;
     Corners eye_corners(const CellPiece& piece) const;
     bool is_cut(CellId cell) const;
@@ -61,6 +67,11 @@ private:
     std::vector<std::array<VertexId, 4>> extra_;
     std::vector<CellId> extra_cells_;
     std::vector<std::uint32_t> items_;   // the order, where it is not the sorter's own
+    // For scenes with isosurfaces, as ScreenSurfaces says.
+    ScreenSurfaces surfaces_;
+    std::vector<glm::dvec3> precise_points_;
+    std::vector<std::int32_t> levels_;
+    std::vector<glm::vec3> gradients_;
     ScreenCells cells_;
 };
 

@@ -38,6 +38,7 @@ struct Fragments {
     HWY_ALIGN float length[length_of_list];                       // along the axis of the view [scene units]
     HWY_ALIGN float key[length_of_list];                          // for pixels that sort: the middle's nearness
     HWY_ALIGN std::int32_t pixel[length_of_list];                 // x + tile_side·y
+    HWY_ALIGN float near_front[length_of_list], near_back[length_of_list];  // with isosurfaces: whole nearness of both ends
     std::size_t count = 0;
     float lowest = 1, highest = 0;  // scalars of all of them
 
@@ -47,6 +48,8 @@ struct Fragments {
         highest = 0;
     }
 };
+
+struct SurfaceTile;  // surface_drawing-inl.hpp, as what is declared with it
 
 // What a task needs while it draws a tile.
 struct TileState {
@@ -58,7 +61,20 @@ struct TileState {
     Fragments fragments;
     CellPlanes planes;
     Corners corners;
+    SurfaceTile* surfaces = nullptr;                 // with isosurfaces
 };
+
+// How a cell's fragments are told in scenes with isosurfaces.
+enum class Precision { float32, float64, float64_alone };
+Precision precision_of(const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile);
+template <bool perspective>
+float margin_of(const CellPlanes& planes, std::size_t k, Precision precision);
+template <bool perspective>
+void complete_fragments(const ScreenCells& cells, std::uint32_t item, Precision precision, std::size_t begin, TileState& tile);
+template <bool perspective, class D>
+void composite_with_surfaces(D d, const ScreenCells& cells, const Shading& shading, TileState& tile);
+void append_ends(const TileState& tile, PendingFragments& pending);
+void set_ends(const SurfaceEnds& ends, std::size_t fragment, TileState& tile);
 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE LightOf<V> shade(D d, const Shading& shading, bool constant, V s_f, V s_b, V length) {
@@ -85,26 +101,43 @@ HWY_INLINE void blend(D d, const LightOf<V>& l, const std::int32_t* pixel, std::
     }
 }
 
-// Composites the fragments behind what is there, in their order. light_of(s_f, s_b, length): scalars 0..1, lengths along the ray.
-template <class D, class LightOfSegments>
-HWY_INLINE void composite_as(D d, const View& view, TileState& tile, const LightOfSegments& light_of) {
+// The last vector of fragments may be part empty.
+template <class D>
+HWY_INLINE void empty_last_vector(D d, Fragments& f) {
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+        f.front[f.count + i] = f.back[f.count + i] = f.length[f.count + i] = 0.0F;
+        f.pixel[f.count + i] = 0;
+    }
+}
+
+// The lengths of a vector of fragments, along their rays.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V lengths_of(D d, const View& view, const TileState& tile, const Fragments& f, std::size_t begin) {
     const hn::RebindToSigned<D> di;
-    using V = hn::Vec<D>;
+    const V length = hn::Load(d, f.length + begin);
+    if (!view.perspective) return length;
+    const auto pixel = hn::Load(di, f.pixel + begin);
+    const V x = hn::Add(hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_side - 1))), hn::Set(d, tile.x));
+    const V y = hn::Add(hn::ConvertTo(d, hn::ShiftRight<column_shift / 2>(pixel)), hn::Set(d, tile.y));
+    const V unit = hn::Set(d, view.unit_per_pixel), u = hn::Mul(x, unit), v = hn::Mul(y, unit);
+    return hn::Mul(length, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, hn::Set(d, 1.0F)))));
+}
+
+// The light of a vector of fragments.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LightOf<V> light_of_fragments(D d, const ScreenCells& cells, const Shading& shading, const TileState& tile, const Fragments& f,
+                                         std::size_t begin) {
+    return shade(d, shading, !cells.cell_scalars.empty(), hn::Load(d, f.front + begin), hn::Load(d, f.back + begin),
+                 lengths_of(d, cells.view, tile, f, begin));
+}
+
+// Composites the fragments behind what is there, in their order. light_of(begin): that of the vector of fragments from there on.
+template <class D, class LightOfVector>
+HWY_INLINE void composite_as(D d, TileState& tile, const LightOfVector& light_of) {
     const Fragments& f = tile.fragments;
     const std::size_t lanes = hn::Lanes(d);
-    const V one = hn::Set(d, 1.0F), unit = hn::Set(d, view.unit_per_pixel);
-    for (std::size_t begin = 0; begin < f.count; begin += lanes) {
-        V length = hn::Load(d, f.length + begin);
-        if (view.perspective) {  // from the axis to the ray
-            const auto pixel = hn::Load(di, f.pixel + begin);
-            const V x = hn::Add(hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_side - 1))), hn::Set(d, tile.x));
-            const V y = hn::Add(hn::ConvertTo(d, hn::ShiftRight<5>(pixel)), hn::Set(d, tile.y));
-            const V u = hn::Mul(x, unit), v = hn::Mul(y, unit);
-            length = hn::Mul(length, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
-        }
-        blend(d, light_of(hn::Load(d, f.front + begin), hn::Load(d, f.back + begin), length), f.pixel + begin, HWY_MIN(lanes, f.count - begin),
-              tile);
-    }
+    for (std::size_t begin = 0; begin < f.count; begin += lanes)
+        blend(d, light_of(begin), f.pixel + begin, HWY_MIN(lanes, f.count - begin), tile);
 }
 
 // The piece that all of the fragments lie in, or -1.
@@ -119,24 +152,31 @@ HWY_NOINLINE void composite(D d, const ScreenCells& cells, const Shading& shadin
     using V = hn::Vec<D>;
     Fragments& f = tile.fragments;
     if (f.count == 0) return;
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {  // the last vector may be part empty
-        f.front[f.count + i] = f.back[f.count + i] = f.length[f.count + i] = 0.0F;
-        f.pixel[f.count + i] = 0;
-    }
+    empty_last_vector(d, f);
     const bool constant = !cells.cell_scalars.empty();
     const std::int32_t piece = shading.pieces && shading.pieces->mean_place && !constant && !shading.half_opacity ? common_piece(*shading.pieces, f) : -1;
     if (piece >= 0) {
         const LightInPiece<D> light_in(d, *shading.pieces, piece);
-        composite_as(d, cells.view, tile, [&](V s_f, V s_b, V length) HWY_ATTR {
+        composite_as(d, tile, [&](std::size_t begin) HWY_ATTR {
+            const V s_f = hn::Load(d, f.front + begin), s_b = hn::Load(d, f.back + begin), length = lengths_of(d, cells.view, tile, f, begin);
             V depth;
             const LightOf<V> light = light_in(s_f, s_b, length, depth);
             if (HWY_LIKELY(hn::AllTrue(d, hn::Le(depth, hn::Set(d, mean_place_depth))))) return light;
             return light_of_walk(d, *shading.pieces, s_f, s_b, length);
         });
     } else {
-        composite_as(d, cells.view, tile, [&](V s_f, V s_b, V length) HWY_ATTR { return shade(d, shading, constant, s_f, s_b, length); });
+        composite_as(d, tile, [&](std::size_t begin) HWY_ATTR { return light_of_fragments(d, cells, shading, tile, f, begin); });
     }
     f.clear();
+}
+
+template <bool perspective, bool surfaces, class D>
+HWY_INLINE void composite_all(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
+    if constexpr (surfaces) {
+        composite_with_surfaces<perspective>(d, cells, shading, tile);
+    } else {
+        composite(d, cells, shading, tile);
+    }
 }
 
 // The faces of a cell, by the bits of those that look towards the eye: these first.
@@ -144,8 +184,10 @@ inline constexpr std::uint8_t faces_by_side[16][4]{{0, 1, 2, 3}, {0, 1, 2, 3}, {
                                                    {1, 2, 0, 3}, {0, 1, 2, 3}, {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
                                                    {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
 
-// The hits of one cell of the group, the one in column k. At least one of its faces looks towards the eye, and one away.
-HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits) {
+// The hits of one cell of the group, the one in column k. At least one of its faces looks towards the eye, and one away. `margin`, with
+// isosurfaces: how much thinner than nothing a segment may be.
+template <bool surfaces>
+HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits, float margin = 0.0F) {
     // Lanes are pixels: blocks of up to 4 by 2. Of larger ones a cell would miss more, and packing them costs as much more.
     const hn::CappedTag<float, 8> d;
     const hn::RebindToSigned<decltype(d)> di;
@@ -190,7 +232,7 @@ HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits) {
             front = hn::IfThenElse(front_2, hn::Min(front, two), front);
             back = hn::IfThenElse(back_2, hn::Max(back, two), back);
             const auto in_box = hn::And(hn::Lt(lane_x, hn::Set(di, width - x)), in_rows);
-            const auto hit = hn::And(hn::Gt(front, back), hn::RebindMask(d, in_box));
+            const auto hit = hn::And(hn::Gt(surfaces ? hn::Add(front, hn::Set(d, margin)) : front, back), hn::RebindMask(d, in_box));
             hn::StoreU(hn::Compress(front, hit), d, hits.front + count);
             hn::StoreU(hn::Compress(back, hit), d, hits.back + count);
             hn::StoreU(hn::Compress(hn::Add(lane_place, hn::Set(di, x + tile_side * y)), hn::RebindMask(di, hit)), di, hits.place + count);
@@ -201,7 +243,7 @@ HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits) {
 }
 
 // The hits of the group as fragments, of which there is room for as many.
-template <bool perspective, bool constant, bool keyed, class D>
+template <bool perspective, bool constant, bool keyed, bool surfaces, class D>
 HWY_NOINLINE void add_fragments(D d, const View& view, const CellPlanes& cell, Hits& hits, Fragments& fragments) {
     const hn::RebindToSigned<D> di;
     using V = hn::Vec<D>;
@@ -234,6 +276,11 @@ HWY_NOINLINE void add_fragments(D d, const View& view, const CellPlanes& cell, H
         }
         hn::StoreU(length, d, f.length + to);
         if constexpr (keyed) hn::StoreU(hn::MulAdd(hn::Set(d, 0.5F), hn::Add(front, back), of_cell(cell.base)), d, f.key + to);
+        if constexpr (surfaces) {
+            const V base = of_cell(cell.base);
+            hn::StoreU(hn::Add(base, front), d, f.near_front + to);
+            hn::StoreU(hn::Add(base, back), d, f.near_back + to);
+        }
         const V first = of_cell(cell.first_scalar);
         if constexpr (constant) {
             hn::StoreU(first, d, f.front + to);
@@ -284,27 +331,36 @@ HWY_INLINE void prefetch_points(const ScreenCells& cells, const std::uint32_t* i
 }
 
 // The fragments of a group of cells, in its order. Calls make_room() when the list is to be emptied.
-template <bool perspective, bool constant, bool keyed, class D, class MakeRoom>
+template <bool perspective, bool constant, bool keyed, bool surfaces, class D, class MakeRoom>
 HWY_INLINE void add_group(D d, const ScreenCells& cells, const std::uint32_t* group, std::size_t count, const Tile& target,
                           TileState& tile, const MakeRoom& make_room) {
     make_planes<perspective, constant>(d, cells, group, count, tile.x, tile.y, target.width, target.height, tile.corners,
                                        tile.planes);
     const auto finish_hits = [&]() HWY_ATTR {
         if (tile.fragments.count + tile.hits.count > Fragments::capacity) make_room();
-        add_fragments<perspective, constant, keyed>(d, cells.view, tile.planes, tile.hits, tile.fragments);
+        add_fragments<perspective, constant, keyed, surfaces>(d, cells.view, tile.planes, tile.hits, tile.fragments);
     };
     for (std::size_t k = 0; k < count; ++k) {
         if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0) continue;
-        if (tile.planes.front_faces[k] == 0 || tile.planes.front_faces[k] == 15) continue;  // no volume
         if (tile.some_closed && !meets_open_pixel(tile, tile.planes, k)) continue;
         const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
         if (tile.hits.count + most > Hits::capacity) finish_hits();
-        find_hits(tile.planes, k, tile.hits);
+        const bool flat = tile.planes.front_faces[k] == 0 || tile.planes.front_faces[k] == 15;
+        if constexpr (surfaces) {  // one by one: many are found again in float64
+            const Precision precision = precision_of(cells, tile.planes, k, group[k], tile);
+            if (flat && precision == Precision::float32) continue;
+            find_hits<true>(tile.planes, k, tile.hits, margin_of<perspective>(tile.planes, k, precision));
+            const std::size_t hits = tile.hits.count;
+            finish_hits();
+            complete_fragments<perspective>(cells, group[k], precision, tile.fragments.count - hits, tile);
+        } else if (!flat) {
+            find_hits<false>(tile.planes, k, tile.hits);
+        }
     }
     finish_hits();
 }
 
-template <bool perspective, bool constant>
+template <bool perspective, bool constant, bool surfaces>
 HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, const Tile& target,
                             std::span<const std::uint32_t> items, TileState& tile) {
     const hn::CappedTag<float, CellPlanes::columns> d;
@@ -320,10 +376,10 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
         for (std::size_t i = 0; i < HWY_MIN(lanes, left); ++i) hwy::Prefetch(cells.corners(items[left - 1 - i]).data());
         return count;
     };
-    const auto composite_all = [&]() HWY_ATTR {
+    const auto empty = [&]() HWY_ATTR {
         fragments += tile.fragments.count;
         since_closing += tile.fragments.count;
-        composite(d, cells, shading, tile);
+        composite_all<perspective, surfaces>(d, cells, shading, tile);
     };
     std::size_t next_count = read(next);
     while (seen && next_count > 0) {
@@ -331,13 +387,13 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
         std::memcpy(group, next, sizeof group);
         next_count = read(next);
         prefetch_points(cells, next, next_count);
-        add_group<perspective, constant, false>(d, cells, group, count, target, tile, composite_all);
+        add_group<perspective, constant, false, surfaces>(d, cells, group, count, target, tile, empty);
         if (since_closing > 4 * Fragments::capacity) {
             since_closing = 0;
             seen = close_pixels(tile, shading.opaque, target.width, target.height);
         }
     }
-    composite_all();
+    empty();
     return fragments;
 }
 
@@ -356,18 +412,21 @@ HWY_INLINE void find_nearest(const ScreenCells& cells, std::span<const std::uint
     }
 }
 
-HWY_INLINE void move_to_pending(Fragments& from, PendingFragments& to) {
+template <bool surfaces>
+HWY_INLINE void move_to_pending(TileState& tile, PendingFragments& to) {
+    Fragments& from = tile.fragments;
     const auto append = [&](auto& list, const auto* begin) { list.insert(list.end(), begin, begin + from.count); };
     append(to.front, from.front);
     append(to.back, from.back);
     append(to.length, from.length);
     append(to.key, from.key);
     append(to.pixel, from.pixel);
+    if constexpr (surfaces) append_ends(tile, to);
     from.clear();
 }
 
 // Composites the pending fragments whose key is at least `nearest`, pixel by pixel from front to back; the others stay.
-template <class D>
+template <bool perspective, bool surfaces, class D>
 HWY_NOINLINE void composite_pending(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, PendingFragments& pending,
                                   float nearest) {
     constexpr std::size_t pixels = tile_side * tile_side;
@@ -407,23 +466,26 @@ HWY_NOINLINE void composite_pending(D d, const ScreenCells& cells, const Shading
             f.pixel[f.count] = pending.pixel[fragment];
             f.lowest = HWY_MIN(f.lowest, HWY_MIN(f.front[f.count], f.back[f.count]));
             f.highest = HWY_MAX(f.highest, HWY_MAX(f.front[f.count], f.back[f.count]));
-            if (++f.count == Fragments::capacity) composite(d, cells, shading, tile);
+            if constexpr (surfaces) set_ends(pending.ends[fragment], f.count, tile);
+            if (++f.count == Fragments::capacity) composite_all<perspective, surfaces>(d, cells, shading, tile);
         }
     }
-    composite(d, cells, shading, tile);
+    composite_all<perspective, surfaces>(d, cells, shading, tile);
     for (std::size_t i = 0; i < count; ++i) {
         if (pending.key[i] >= nearest) continue;
         pending.front[kept] = pending.front[i];
         pending.back[kept] = pending.back[i];
         pending.length[kept] = pending.length[i];
         pending.key[kept] = pending.key[i];
+        if constexpr (surfaces) pending.ends[kept] = pending.ends[i];
         pending.pixel[kept++] = pending.pixel[i];
     }
     for (auto* list : {&pending.front, &pending.back, &pending.length, &pending.key}) list->resize(kept);
     pending.pixel.resize(kept);
+    if constexpr (surfaces) pending.ends.resize(kept);
 }
 
-template <bool perspective, bool constant>
+template <bool perspective, bool constant, bool surfaces>
 HWY_INLINE std::size_t draw_by_pixels(const ScreenCells& cells, const Shading& shading, const Tile& target,
                                       std::span<const std::uint32_t> items, TileState& tile, PendingFragments& pending) {
     const hn::CappedTag<float, CellPlanes::columns> d;
@@ -433,22 +495,22 @@ HWY_INLINE std::size_t draw_by_pixels(const ScreenCells& cells, const Shading& s
     bool seen = close_pixels(tile, shading.opaque, target.width, target.height);
     const auto keep = [&]() HWY_ATTR {
         fragments += tile.fragments.count;
-        move_to_pending(tile.fragments, pending);
+        move_to_pending<surfaces>(tile, pending);
     };
     std::size_t left = items.size();
     for (std::size_t group = 0; seen && left > 0; ++group) {
         std::uint32_t of_group[CellPlanes::columns];
         const std::size_t count = HWY_MIN(lanes, left);
         for (std::size_t i = 0; i < count; ++i) of_group[i] = items[--left];
-        add_group<perspective, constant, true>(d, cells, of_group, count, target, tile, keep);
+        add_group<perspective, constant, true, surfaces>(d, cells, of_group, count, target, tile, keep);
         if (pending.key.size() < enough) continue;
         keep();
-        composite_pending(d, cells, shading, tile, pending, pending.nearest[group + 1]);
+        composite_pending<perspective, surfaces>(d, cells, shading, tile, pending, pending.nearest[group + 1]);
         seen = close_pixels(tile, shading.opaque, target.width, target.height);
         enough = HWY_MAX(8 * Fragments::capacity, 2 * pending.key.size());
     }
     keep();
-    composite_pending(d, cells, shading, tile, pending, -1e35F);
+    composite_pending<perspective, surfaces>(d, cells, shading, tile, pending, -1e35F);
     return fragments;
 }
 

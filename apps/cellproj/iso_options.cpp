@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "iso_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "mesh/error.hpp"
+#include "option_text.hpp"
+
+namespace cellproj::cli {
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, glm::dvec3>, 12> names{{{"white", {1, 1, 1}},
+                                                                         {"gray", {0.5, 0.5, 0.5}},
+                                                                         {"black", {0, 0, 0}},
+                                                                         {"red", {0.85, 0.1, 0.1}},
+                                                                         {"orange", {1, 0.55, 0}},
+                                                                         {"yellow", {0.95, 0.85, 0.1}},
+                                                                         {"green", {0.1, 0.6, 0.2}},
+                                                                         {"cyan", {0, 0.75, 0.75}},
+                                                                         {"blue", {0.1, 0.3, 0.85}},
+                                                                         {"purple", {0.5, 0.2, 0.7}},
+                                                                         {"pink", {1, 0.55, 0.7}},
+                                                                         {"brown", {0.55, 0.35, 0.2}}}};
+constexpr const char* color_forms = "white, gray, black, red, orange, yellow, green, cyan, blue, purple, pink, brown, #RRGGBB, or R,G,B in 0..1";
+
+[[noreturn]] void refuse(const std::string& expected, std::string_view found, const std::string& advice) {
+    throw Error({ErrorKind::option, "--iso", expected, "\"" + std::string(found) + "\"", advice});
+}
+
+// #RRGGBB
+std::optional<glm::dvec3> to_hex_color(std::string_view text) {
+    unsigned bits = 0;
+    const auto [rest, error] = std::from_chars(text.data() + 1, text.data() + text.size(), bits, 16);
+    if (text.size() != 7 || error != std::errc() || rest != text.data() + text.size()) return std::nullopt;
+    return glm::dvec3(bits >> 16, bits >> 8 & 255U, bits & 255U) / 255.0;
+}
+
+std::optional<glm::dvec3> to_color(std::string_view text) {
+    if (text.starts_with('#')) return to_hex_color(text);
+    const auto* name = std::ranges::find(names, text, [](const auto& entry) { return entry.first; });
+    if (name != names.end()) return name->second;
+    const auto numbers = to_point(text);
+    if (!numbers || std::min({numbers->x, numbers->y, numbers->z}) < 0 || std::max({numbers->x, numbers->y, numbers->z}) > 1)
+        return std::nullopt;
+    return numbers;
+}
+
+// Emission of an emitter is per length: only its hue is a colour. What is black there says nothing about a surface.
+glm::dvec3 color_at(const TransferFunction& colors, double value) {
+    const glm::dvec3 color = colors.color(value);
+    const double brightest = std::max({color.x, color.y, color.z});
+    if (!(brightest > 0)) return glm::dvec3(0.8);
+    return colors.model() == OpticalModel::emitter || brightest > 1 ? color / brightest : color;
+}
+
+void add_surfaces(std::string_view text, const TransferFunction& colors, std::vector<IsoSurface>& surfaces) {
+    const auto parts = split(text, ':');
+    if (parts.size() > 3) refuse("VALUE[,VALUE...][:COLOR[:OPACITY]]", text, "give --iso again for another colour");
+    const bool colored = parts.size() > 1 && !parts[1].empty();
+    const auto color = colored ? to_color(parts[1]) : std::nullopt;
+    if (colored && !color) refuse(std::string("a colour: ") + color_forms, parts[1], "leave it empty for that of the transfer function");
+    const auto opacity = parts.size() > 2 ? to_number(parts[2]) : 1.0;
+    if (!opacity || *opacity < 0 || *opacity > 1) refuse("an opacity in 0..1", parts[2], "1 hides what is behind");
+    for (const std::string_view word : split(parts[0], ',')) {
+        const auto value = to_number(word);
+        if (!value) refuse("isovalues: finite numbers with commas between", word, "info tells the range of every field");
+        surfaces.push_back({*value, color.value_or(color_at(colors, *value)), *opacity, {}});
+    }
+}
+
+}  // namespace
+
+void add_iso_options(CLI::App& command, IsoOptions& options) {
+    CLI::Option* iso = command.add_option("--iso", options.surfaces,
+                                          std::string("Draw isosurfaces of --field: VALUE[,VALUE...][:COLOR[:OPACITY]] (again for more). COLOR: ") +
+                                              color_forms + "; default: that of the transfer function at the value. OPACITY: 0..1, default 1")
+                           ->allow_extra_args(false);
+    command.add_flag("--volume", options.volume,
+                     "Draw the volume around the isosurfaces, too; so do --transfer, --opacity-scale and --opacity-field")
+        ->needs(iso);
+    command.add_option("--shading", options.shading,
+                       "Isosurfaces: smooth (by the gradients of the points), flat (of the cells), or unlit: their colour as it is")
+        ->check(CLI::IsMember({"flat", "smooth", "unlit"}))->capture_default_str()->needs(iso);
+    command.add_option("--light", options.light, "Isosurfaces: towards a distant light, X,Y,Z; default: a headlight")
+        ->expected(3)->delimiter(',')->needs(iso);
+}
+
+SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& colors) {
+    std::vector<IsoSurface> surfaces;
+    for (const std::string& text : options.surfaces) add_surfaces(text, colors, surfaces);
+    SurfaceScene scene{.isosurfaces = IsoSurfaces(std::move(surfaces), "--iso"),
+                       .shading = options.shading == "flat"    ? Shading::flat
+                                  : options.shading == "unlit" ? Shading::unlit
+                                                               : Shading::smooth};
+    if (!options.light.empty()) scene.lighting.lights = {{.towards = glm::dvec3(options.light[0], options.light[1], options.light[2])}};
+    validate(scene.lighting, "--light");
+    return scene;
+}
+
+void warn_of_missing(const IsoSurfaces& surfaces, const ScalarField& field) {
+    const ScalarRange values = range(field.values);
+    for (const IsoSurface& surface : surfaces.surfaces()) {
+        if (surface.value > values.low && surface.value <= values.high) continue;
+        std::fprintf(stderr, "cellproj: warning: --iso %g: no surface there, field \"%s\" is %g .. %g%s\n", surface.value, field.name.c_str(),
+                     values.low, values.high, surface.value == values.low ? " and nowhere below" : "");
+    }
+}
+
+}  // namespace cellproj::cli

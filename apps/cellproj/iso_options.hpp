@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Isosurfaces on the command line: which, in which colours, and how they are lit.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "classify/transfer_function.hpp"
+#include "mesh/scalar_field.hpp"
+#include "render/surface_scene.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace cellproj::cli {
+
+struct IsoOptions {
+    std::vector<std::string> surfaces;  // --iso, each VALUE[,VALUE…][:COLOR[:OPACITY]]
+    std::string shading = "smooth";
+    std::vector<double> light;  // X,Y,Z towards it; empty: a headlight
+    bool volume = false;        // the medium around them is drawn, too
+
+    bool any() const { return !surfaces.empty(); }
+};
+
+// Into `options`, which must live as long as the command.
+void add_iso_options(CLI::App& command, IsoOptions& options);
+
+// Surfaces without a colour of their own take that of `colors` at their value. Throws Error (option) that names the option and
+// what was found.
+SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& colors);
+
+// Tells of isovalues that the field does not reach.
+void warn_of_missing(const IsoSurfaces& surfaces, const ScalarField& field);
+
+}  // namespace cellproj::cli

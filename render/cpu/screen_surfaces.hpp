@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The isosurfaces of a scene as tiles see them: plain arrays, beside those of ScreenCells (kernels.hpp).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "render/prepared_surfaces.hpp"
+#include "render/surface_scene.hpp"
+
+namespace cellproj::cpu {
+
+using SurfaceShading = cellproj::Shading;  // cpu::Shading is that of segments
+
+// The material of a surface; its front side is that of the lower scalars.
+struct SurfaceMaterial {
+    glm::vec3 front, back;  // colours, not associated
+    float opacity;
+};
+
+// classify/lighting.hpp in float32.
+struct SurfaceLighting {
+    struct Light {
+        bool headlight;
+        glm::vec3 towards;            // of unit length, unless a headlight
+        glm::vec3 diffuse, specular;  // with the light's colour
+    };
+    glm::vec3 ambient;
+    float exponent;
+    bool two_sided;
+    std::vector<Light> lights;
+};
+
+struct ScreenSurfaces {
+    std::span<const float> values;              // ascending isovalues, normalized (PreparedSurfaces)
+    std::vector<SurfaceMaterial> materials;     // one for each
+    SurfaceShading shading = SurfaceShading::unlit;
+    SurfaceLighting lighting;
+    bool medium = true;                         // whether there is light between them
+    std::span<const std::int32_t> levels;       // #T + #extra, as of PreparedSurfaces; parts of crossed cells are crossed
+    // Places of crossed cells in float64: x and y as of ScreenCells::points, and the whole nearness, 1/depth in perspective.
+    std::span<const glm::dvec3> points;
+    std::span<const glm::vec3> gradients;       // flat: #T + #extra; smooth: like `points`; axes of the mesh
+    glm::vec3 right, down, forward;             // of the camera, of unit length, in the axes of the mesh
+};
+
+// Where the last fragment of a pixel ended, so that none of its surfaces is lost or doubled at the face to the next one.
+struct PixelTrail {
+    static constexpr std::int32_t none = -1, closed = -2;
+
+    std::int32_t level = none;  // of its scalar; closed: behind an opaque surface
+    float nearness = 0;
+    std::uint32_t item = 0;
+};
+
+}  // namespace cellproj::cpu

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Isosurfaces in the fragments of a tile: each segment is cut where it crosses one (classify/isosurface.hpp), the medium in front is
+// integrated, then the surface composited, lit. Included once per instruction set, behind Highway; private to kernels.cpp.
+//
+// Met exactly once. A fragment of a cell that no surface crosses has one level at both ends, which no rounding changes. Fragments of
+// crossed cells, and of such with faces seen edge-on, are found again in float64, where both cells of a face agree on it bit for bit
+// (precise_cell.hpp). And each pixel
+// remembers the level at which its last fragment ended: where the next one begins at that place with another level (a cell of no
+// thickness lies between, or rounding has its way), the surfaces between are met there. So along a ray levels change without a gap.
+#if defined(CELLPROJ_SURFACE_DRAWING_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CELLPROJ_SURFACE_DRAWING_INL
+#undef CELLPROJ_SURFACE_DRAWING_INL
+#else
+#define CELLPROJ_SURFACE_DRAWING_INL
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace cellproj::cpu::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// What a task needs besides while it draws a tile with isosurfaces.
+struct SurfaceTile {
+    SurfaceEnds ends[Fragments::capacity];  // of TileState::fragments
+    PixelTrail trails[tile_side * tile_side];
+    Fragments pieces;                       // what the segments are cut into
+    std::int32_t hit[Fragments::capacity];  // that ends the piece: of `hits`, or −1
+    SurfaceHits hits;
+    PreciseCell cell;                       // the one at hand, if it needs float64
+};
+
+// Which cells are found again in float64: those that are crossed, and all with a face so steep that float32 does not tell on which side of
+// it a ray is. float32 may have given fragments of the latter to another cell, so that they try every pixel of their box.
+HWY_INLINE Precision precision_of(const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile) {
+    float steepest = 0.0F;
+    for (std::size_t face = 0; face < 4; ++face)
+        steepest = HWY_MAX(steepest, std::abs(planes.slope_x[face][k]) + std::abs(planes.slope_y[face][k]));
+    const bool steep = 1e-4F * steepest > planes.nearest[k] - planes.farthest[k];  // places are rounded to some 1e-5 of a pixel
+    if (!steep && cells.surfaces->levels[item] != PreparedSurfaces::crossed_cell) return Precision::float32;
+    tile.surfaces->cell = precise_cell(cells, item);
+    return steep || tile.surfaces->cell.thin ? Precision::float64_alone : Precision::float64;
+}
+
+// How much thinner than nothing a segment of float32 may be, to be tried in float64.
+template <bool perspective>
+HWY_INLINE float margin_of(const CellPlanes& planes, std::size_t k, Precision precision) {
+    if (precision == Precision::float32) return 0.0F;
+    if (precision == Precision::float64_alone) return 1e38F;
+    return 1e-3F * (planes.nearest[k] - planes.farthest[k]) + 1e-6F * (perspective ? planes.base[k] : 1.0F);
+}
+
+// Both ends of segments, a vector each: nearness, scalar and face.
+template <class V>
+struct PreciseEnds {
+    V near[2], scalar[2], face[2];
+};
+
+template <bool perspective, class DD, class V = hn::Vec<DD>>
+HWY_INLINE PreciseEnds<V> precise_ends(DD dd, const PreciseCell& cell, V x, V y) {
+    const V huge = hn::Set(dd, 1e300);
+    PreciseEnds<V> ends{{huge, hn::Neg(huge)}, {huge, huge}, {huge, huge}};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const glm::dvec3& anchor = cell.points[static_cast<std::size_t>(face_corners[k][0])];
+        const V dx = hn::Sub(x, hn::Set(dd, anchor.x)), dy = hn::Sub(y, hn::Set(dd, anchor.y));
+        const auto at = [&](const ScreenPlane& plane) HWY_ATTR {
+            return hn::MulAdd(hn::Set(dd, plane.slope_x), dx, hn::MulAdd(hn::Set(dd, plane.slope_y), dy, hn::Set(dd, plane.value)));
+        };
+        const V n = at(cell.nearness[k]), s = at(cell.scalar[k]);
+        const std::size_t end = cell.towards_eye[k] ? 0 : 1;
+        const auto closer = end == 0 ? hn::Lt(n, ends.near[0]) : hn::Gt(n, ends.near[1]);
+        ends.near[end] = hn::IfThenElse(closer, n, ends.near[end]);
+        ends.scalar[end] = hn::IfThenElse(closer, s, ends.scalar[end]);
+        ends.face[end] = hn::IfThenElse(closer, hn::Set(dd, static_cast<double>(k)), ends.face[end]);
+    }
+    if constexpr (perspective)
+        for (std::size_t end = 0; end < 2; ++end) ends.scalar[end] = hn::Div(ends.scalar[end], ends.near[end]);
+    return ends;
+}
+
+HWY_INLINE glm::dvec2 place_of(const TileState& tile, std::int32_t pixel) {
+    return glm::dvec2(tile.x + static_cast<float>(pixel & (tile_side - 1)), tile.y + static_cast<float>(pixel / tile_side)) + beside_center;
+}
+
+// One fragment, told in float64, as number `to` of the tile; false where it has no length.
+template <bool perspective>
+HWY_INLINE bool write_precisely(const ScreenCells& cells, const PreciseCell& cell, std::uint32_t item, const double (&near)[2],
+                                const double (&scalar)[2], const int (&face)[2], std::int32_t pixel, TileState& tile, std::size_t to) {
+    if (!(near[0] > near[1]) || (perspective && !(near[1] > 0.0))) return false;
+    Fragments& f = tile.fragments;
+    float s[2];
+    for (std::size_t end = 0; end < 2; ++end) {
+        const auto k = static_cast<std::size_t>(face[end]);
+        s[end] = static_cast<float>(std::min<double>(std::max<double>(scalar[end], cell.lowest[k]), cell.highest[k]));
+    }
+    double length = near[0] - near[1];
+    if constexpr (perspective)  // as in add_fragments
+        length = near[0] > cells.view.near_plane ? 1.0 / near[1] : length / (near[0] * near[1]);
+    f.front[to] = s[0];
+    f.back[to] = s[1];
+    f.length[to] = static_cast<float>(length);
+    f.key[to] = static_cast<float>(0.5 * (near[0] + near[1]));
+    f.pixel[to] = pixel;
+    SurfaceEnds& ends = tile.surfaces->ends[to];
+    const ScreenSurfaces& surfaces = *cells.surfaces;
+    ends.item = item;
+    ends.level_front = level_of(surfaces.values, s[0]);
+    ends.level_back = level_of(surfaces.values, s[1]);
+    ends.near_front = static_cast<float>(near[0]);
+    ends.near_back = static_cast<float>(near[1]);
+    if (ends.level_front == ends.level_back) return true;
+    const glm::dvec2 p = place_of(tile, pixel);
+    ends.gradient_front = gradient_on_face(surfaces, cell, item, face[0], p, perspective);
+    ends.gradient_back = gradient_on_face(surfaces, cell, item, face[1], p, perspective);
+    return true;
+}
+
+// The ends of the item's fragments, from number `begin` on.
+template <bool perspective>
+HWY_NOINLINE void complete_fragments(const ScreenCells& cells, std::uint32_t item, Precision precision, std::size_t begin, TileState& tile) {
+    Fragments& f = tile.fragments;
+    if (precision == Precision::float32) {
+        const std::int32_t level = cells.surfaces->levels[item];
+        for (std::size_t i = begin; i < f.count; ++i) {
+            SurfaceEnds& ends = tile.surfaces->ends[i];
+            ends.item = item;
+            ends.level_front = ends.level_back = level;
+            ends.near_front = f.near_front[i];
+            ends.near_back = f.near_back[i];
+        }
+        return;
+    }
+    const PreciseCell& cell = tile.surfaces->cell;
+    const int towards = cell.towards_eye[0] + cell.towards_eye[1] + cell.towards_eye[2] + cell.towards_eye[3];
+    const std::size_t end = towards % 4 == 0 ? begin : f.count;  // none where all faces are seen edge-on
+    std::size_t kept = begin;
+    const hn::CappedTag<double, 8> dd;
+    const hn::Rebind<std::int32_t, decltype(dd)> di;
+    const std::size_t lanes = hn::Lanes(dd);
+    for (std::size_t i = begin; i < end; i += lanes) {
+        const auto pixel = hn::LoadU(di, f.pixel + i);
+        const auto x = hn::Add(hn::Set(dd, static_cast<double>(tile.x) + beside_center.x), hn::PromoteTo(dd, hn::And(pixel, hn::Set(di, tile_side - 1))));
+        const auto y = hn::Add(hn::Set(dd, static_cast<double>(tile.y) + beside_center.y), hn::PromoteTo(dd, hn::ShiftRight<5>(pixel)));
+        const auto ends = precise_ends<perspective>(dd, cell, x, y);
+        HWY_ALIGN double near[2][8], scalar[2][8], face[2][8];
+        HWY_ALIGN std::int32_t pixels[8];
+        hn::Store(pixel, di, pixels);
+        for (std::size_t k = 0; k < 2; ++k) {
+            hn::Store(ends.near[k], dd, near[k]);
+            hn::Store(ends.scalar[k], dd, scalar[k]);
+            hn::Store(ends.face[k], dd, face[k]);
+        }
+        for (std::size_t j = 0; j < HWY_MIN(lanes, end - i); ++j)
+            kept += write_precisely<perspective>(cells, cell, item, {near[0][j], near[1][j]}, {scalar[0][j], scalar[1][j]},
+                                                 {static_cast<int>(face[0][j]), static_cast<int>(face[1][j])}, pixels[j], tile, kept);
+    }
+    f.count = kept;
+}
+
+// For pixels that sort their own fragments.
+HWY_INLINE void append_ends(const TileState& tile, PendingFragments& pending) {
+    const SurfaceEnds* ends = tile.surfaces->ends;
+    pending.ends.insert(pending.ends.end(), ends, ends + tile.fragments.count);
+}
+HWY_INLINE void set_ends(const SurfaceEnds& ends, std::size_t fragment, TileState& tile) { tile.surfaces->ends[fragment] = ends; }
+
+// Composites the pieces and the surfaces that end them behind what is there, and forgets them.
+template <class D>
+HWY_NOINLINE void composite_pieces(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
+    SurfaceTile& s = *tile.surfaces;
+    const std::size_t lanes = hn::Lanes(d);
+    shade_hits(d, cells, tile.x, tile.y, s.hits);
+    const auto add = [&](std::int32_t pixel, const float* light) HWY_ATTR {
+        float* rgba = tile.rgba[pixel];
+        const float transmitted = 1.0F - rgba[3];
+        for (std::size_t channel = 0; channel < 4; ++channel) rgba[channel] += transmitted * light[channel];
+    };
+    HWY_ALIGN float light[4 * CellPlanes::columns] = {};
+    if (cells.surfaces->medium) empty_last_vector(d, s.pieces);
+    for (std::size_t begin = 0; begin < s.pieces.count; begin += lanes) {
+        if (cells.surfaces->medium) {
+            const auto l = light_of_fragments(d, cells, shading, tile, s.pieces, begin);
+            hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
+        }
+        for (std::size_t i = 0; i < HWY_MIN(lanes, s.pieces.count - begin); ++i) {
+            const std::int32_t pixel = s.pieces.pixel[begin + i], hit = s.hit[begin + i];
+            if (cells.surfaces->medium) add(pixel, light + 4 * i);
+            if (hit >= 0) add(pixel, s.hits.light + 4 * hit);
+        }
+    }
+    s.pieces.count = s.hits.count = 0;
+}
+
+// A stretch of medium, and behind it the surface `surface` or none (−1).
+struct RayPiece {
+    float front, back, length;
+    std::int32_t pixel;
+    std::int32_t surface = -1;
+    bool rising = false;
+    glm::vec3 gradient = glm::vec3(0);
+};
+
+HWY_INLINE void add_hit(const ScreenSurfaces& surfaces, std::int32_t surface, bool rising, const glm::vec3& gradient, std::int32_t pixel,
+                        SurfaceHits& hits) {
+    const SurfaceMaterial& material = surfaces.materials[static_cast<std::size_t>(surface)];
+    const glm::vec3& color = rising ? material.front : material.back;
+    const std::size_t i = hits.count++;
+    for (int k = 0; k < 3; ++k) {
+        hits.gradient[k][i] = gradient[k];
+        hits.color[k][i] = color[k];
+    }
+    hits.opacity[i] = material.opacity;
+    hits.pixel[i] = pixel;
+}
+
+template <class D>
+HWY_INLINE void add_piece(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, const RayPiece& piece) {
+    SurfaceTile& s = *tile.surfaces;
+    if (piece.surface < 0 && !cells.surfaces->medium) return;
+    if (s.pieces.count == Fragments::capacity) composite_pieces(d, cells, shading, tile);
+    const std::size_t i = s.pieces.count++;
+    s.pieces.front[i] = piece.front;
+    s.pieces.back[i] = piece.back;
+    s.pieces.length[i] = piece.length;
+    s.pieces.pixel[i] = piece.pixel;
+    s.hit[i] = -1;
+    if (piece.surface < 0) return;
+    s.hit[i] = static_cast<std::int32_t>(s.hits.count);
+    add_hit(*cells.surfaces, piece.surface, piece.rising, piece.gradient, piece.pixel, s.hits);
+}
+
+// Calls visit(surface, rising) for the surfaces between two levels in the order in which a ray meets them, while it says so.
+template <class Visit>
+HWY_INLINE void for_each_crossing(std::int32_t level_front, std::int32_t level_back, const Visit& visit) {
+    for (std::int32_t i = level_front; i < level_back; ++i)
+        if (!visit(i, true)) return;
+    for (std::int32_t i = level_front; i > level_back; --i)
+        if (!visit(i - 1, false)) return;
+}
+
+// Whether a fragment begins where the last one ended: by places rounded to float32, and planes of slivers.
+template <bool perspective>
+HWY_INLINE bool follows(float left, float entered) {
+    const float rounding = perspective ? 4e-6F * left * (1.0F + left) : 4e-6F;  // 4e-6 of the depth, and of the mesh
+    return std::abs(left - entered) <= rounding;
+}
+
+// Share of the way from s_f to s_b at which v lies, 0..1.
+HWY_INLINE float share_of_way(float s_f, float s_b, float v) {
+    const float way = s_b - s_f;
+    return way != 0.0F ? HWY_MIN(HWY_MAX((v - s_f) / way, 0.0F), 1.0F) : 0.0F;
+}
+
+// The surfaces in a jump of the scalar, from where the pixel's last fragment ended to where the next begins. They belong to the cell on
+// the lower side, as they do where the scalar reaches their value just at the face.
+template <class D>
+HWY_NOINLINE void add_jump(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, std::int32_t pixel,
+                           const SurfaceEnds& ends, PixelTrail& trail) {
+    const glm::dvec2 p = place_of(tile, pixel);
+    const bool rises = trail.level < ends.level_front;
+    const glm::vec3 gradient = gradient_at_end(cells, rises ? trail.item : ends.item, p, !rises);
+    for_each_crossing(trail.level, ends.level_front, [&](std::int32_t surface, bool rising) HWY_ATTR {
+        add_piece(d, cells, shading, tile, {0.0F, 0.0F, 0.0F, pixel, surface, rising, gradient});
+        const bool opaque = cells.surfaces->materials[static_cast<std::size_t>(surface)].opacity >= 1.0F;
+        if (opaque) trail.level = PixelTrail::closed;
+        return !opaque;
+    });
+}
+
+// Composites the fragments behind what is there, in their order, with the surfaces in them, and forgets them.
+template <bool perspective, class D>
+HWY_NOINLINE void composite_with_surfaces(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
+    Fragments& f = tile.fragments;
+    SurfaceTile& s = *tile.surfaces;
+    const ScreenSurfaces& surfaces = *cells.surfaces;
+    for (std::size_t i = 0; i < f.count; ++i) {
+        const SurfaceEnds& ends = s.ends[i];
+        const std::int32_t pixel = f.pixel[i];
+        PixelTrail& trail = s.trails[pixel];
+        if (trail.level >= 0 && trail.level != ends.level_front && follows<perspective>(trail.nearness, ends.near_front))
+            add_jump(d, cells, shading, tile, pixel, ends, trail);
+        if (trail.level == PixelTrail::closed) continue;
+        trail = {ends.level_back, ends.near_back, ends.item};
+        // What begins at the near plane has the way from the eye as well, which belongs to the first piece.
+        float before = perspective && ends.near_front > cells.view.near_plane ? 1.0F / ends.near_front : 0.0F;
+        const float way = HWY_MAX(f.length[i] - before, 0.0F);
+        float front = f.front[i], share = 0.0F;
+        for_each_crossing(ends.level_front, ends.level_back, [&](std::int32_t surface, bool rising) HWY_ATTR {
+            const float v = surfaces.values[static_cast<std::size_t>(surface)];
+            const float at = share_of_way(f.front[i], f.back[i], v);
+            const glm::vec3 gradient = ends.gradient_front + at * (ends.gradient_back - ends.gradient_front);
+            add_piece(d, cells, shading, tile, {front, v, before + way * (at - share), pixel, surface, rising, gradient});
+            before = 0.0F;
+            front = v;
+            share = at;
+            const bool opaque = surfaces.materials[static_cast<std::size_t>(surface)].opacity >= 1.0F;
+            if (opaque) trail.level = PixelTrail::closed;
+            return !opaque;
+        });
+        if (trail.level == PixelTrail::closed) continue;
+        add_piece(d, cells, shading, tile, {front, f.back[i], before + way * (1.0F - share), pixel});
+    }
+    f.clear();
+    composite_pieces(d, cells, shading, tile);
+}
+
+// ---- Opaque surfaces alone: the nearest one of each pixel, whatever the order.
+
+struct NearestHits {
+    float nearness[tile_side * tile_side];
+    std::int32_t surface[tile_side * tile_side];  // −1: none
+    bool rising[tile_side * tile_side];
+    glm::vec3 gradient[tile_side * tile_side];
+};
+
+// Only the first surface of a fragment can be the nearest one.
+template <bool perspective>
+HWY_INLINE void keep_nearest(const ScreenSurfaces& surfaces, const TileState& tile, std::size_t i, NearestHits& nearest) {
+    const Fragments& f = tile.fragments;
+    const SurfaceEnds& ends = tile.surfaces->ends[i];
+    if (ends.level_front == ends.level_back) return;
+    const bool rising = ends.level_front < ends.level_back;
+    const std::int32_t surface = rising ? ends.level_front : ends.level_front - 1;
+    const float at = share_of_way(f.front[i], f.back[i], surfaces.values[static_cast<std::size_t>(surface)]);
+    // The scalar is linear in depth.
+    const float near = perspective ? ends.near_front * ends.near_back / (ends.near_back + at * (ends.near_front - ends.near_back))
+                                   : ends.near_front + at * (ends.near_back - ends.near_front);
+    const std::int32_t pixel = f.pixel[i];
+    if (!(near > nearest.nearness[pixel])) return;
+    nearest.nearness[pixel] = near;
+    nearest.surface[pixel] = surface;
+    nearest.rising[pixel] = rising;
+    nearest.gradient[pixel] = ends.gradient_front + at * (ends.gradient_back - ends.gradient_front);
+}
+
+template <bool perspective>
+HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target, std::span<const std::uint32_t> items, TileState& tile) {
+    const hn::CappedTag<float, CellPlanes::columns> d;
+    const std::size_t lanes = hn::Lanes(d);
+    SurfaceTile& s = *tile.surfaces;
+    NearestHits nearest;
+    for (int p = 0; p < tile_side * tile_side; ++p) {
+        nearest.nearness[p] = s.trails[p].level == PixelTrail::none ? -1e30F : s.trails[p].nearness;
+        nearest.surface[p] = -1;
+    }
+    std::size_t fragments = 0;
+    const auto keep = [&] {
+        fragments += tile.fragments.count;
+        for (std::size_t i = 0; i < tile.fragments.count; ++i) keep_nearest<perspective>(*cells.surfaces, tile, i, nearest);
+        tile.fragments.clear();
+    };
+    for (std::size_t begin = 0; begin < items.size(); begin += lanes) {
+        const std::size_t count = HWY_MIN(lanes, items.size() - begin);
+        if (begin + count < items.size()) prefetch_points(cells, &items[begin + count], HWY_MIN(lanes, items.size() - begin - count));
+        add_group<perspective, false, false, true>(d, cells, &items[begin], count, target, tile, keep);
+    }
+    keep();
+
+    for (std::int32_t p = 0; p < tile_side * tile_side; ++p) {
+        if (nearest.surface[p] < 0) continue;
+        add_hit(*cells.surfaces, nearest.surface[p], nearest.rising[p], nearest.gradient[p], p, s.hits);
+        s.trails[p] = {PixelTrail::closed, nearest.nearness[p], 0};
+    }
+    shade_hits(d, cells, tile.x, tile.y, s.hits);
+    for (std::size_t i = 0; i < s.hits.count; ++i) std::memcpy(tile.rgba[s.hits.pixel[i]], s.hits.light + 4 * i, 4 * sizeof(float));
+    return fragments;
+}
+
+}  // namespace cellproj::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/prepared_surfaces.hpp"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "mesh/gradient.hpp"
+#include "render/prepared_scene.hpp"
+
+namespace cellproj {
+
+namespace {
+
+// Isovalues beyond the field's range stay beyond it, and finite.
+float normalized(const SceneUnits& units, double value) {
+    return static_cast<float>(std::clamp(units.normalized(value), -1.0, 2.0));
+}
+
+std::vector<std::int32_t> find_levels(const TetMesh& mesh, const ScalarField& field, const SceneUnits& units,
+                                      std::span<const float> values) {
+    std::vector<std::int32_t> of_points(mesh.points.size()), levels(mesh.tets.size());
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    oneapi::tbb::parallel_for(Range(0, of_points.size(), 4096), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            const double s = field.values[i];
+            of_points[i] = std::isfinite(s) ? level_of(values, normalized(units, s)) : PreparedSurfaces::no_scalar;
+        }
+    });
+    oneapi::tbb::parallel_for(Range(0, levels.size(), 4096), [&](const Range& range) {
+        for (std::size_t cell = range.begin(); cell != range.end(); ++cell) {
+            std::int32_t low = of_points[mesh.tets[cell][0]], high = low;
+            for (const VertexId v : mesh.tets[cell]) {
+                low = std::min(low, of_points[v]);
+                high = std::max(high, of_points[v]);
+            }
+            levels[cell] = low == PreparedSurfaces::no_scalar ? low : low < high ? PreparedSurfaces::crossed_cell : low;
+        }
+    });
+    return levels;
+}
+
+// How much the normalized scalar differs in a flat cell between its two sides, at most: c·s / max |c| with c the weights of the
+// affine relation of its four points (Σ c = 0, Σ c·p = 0), the signed areas of the faces opposite to them.
+double jump_in(const TetMesh& mesh, const ScalarField& field, const SceneUnits& units, CellId cell) {
+    const auto& tet = mesh.tets[cell];
+    std::array<glm::dvec3, 4> p, normals;
+    for (std::size_t i = 0; i < 4; ++i) p[i] = (mesh.points[tet[i]] - mesh.points[tet[0]]) / units.length;
+    constexpr std::size_t faces[4][3]{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};  // turned as their signs are
+    std::size_t widest = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto& [a, b, c] = faces[i];
+        normals[i] = glm::cross(p[b] - p[a], p[c] - p[a]);
+        if (glm::length(normals[i]) > glm::length(normals[widest])) widest = i;
+    }
+    const double area = glm::length(normals[widest]);
+    if (!(area > 0)) return 0;  // a line: no ray meets it
+    double jump = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        jump += glm::dot(normals[i] / area, normals[widest] / area) * units.normalized(field.values[tet[i]]);
+    return std::abs(jump);
+}
+
+double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+std::vector<glm::vec3> over_the_steepest(const std::vector<glm::dvec3>& gradients) {
+    double steepest = 0;
+    for (const glm::dvec3& g : gradients) steepest = std::max(steepest, largest(g));
+    std::vector<glm::vec3> result(gradients.size(), glm::vec3(0));
+    if (!(steepest > 0)) return result;
+    std::transform(gradients.begin(), gradients.end(), result.begin(), [&](const glm::dvec3& g) { return glm::vec3(g / steepest); });
+    return result;
+}
+
+}  // namespace
+
+PreparedSurfaces::PreparedSurfaces(const Scene& scene, const SceneUnits& units) : scene_(scene.surfaces.get()) {
+    assert(has_surfaces(scene) && scene.field->location == FieldLocation::points);
+    for (const IsoSurface& surface : scene_->isosurfaces.surfaces()) values_.push_back(normalized(units, surface.value));
+    levels_ = find_levels(*scene.mesh, *scene.field, units, values_);
+    for (CellId cell = 0; cell < levels_.size(); ++cell)
+        if (levels_[cell] == crossed_cell) crossed_.push_back(cell);
+
+    const Gradients of_cells = cell_gradients(*scene.mesh, *scene.field);
+    if (of_cells.undefined > 0) find_jumps(scene, units, of_cells.values);
+    if (scene_->shading == Shading::flat) gradients_ = over_the_steepest(of_cells.values);
+    if (scene_->shading == Shading::smooth) gradients_ = over_the_steepest(vertex_gradients(*scene.mesh, *scene.field).values);
+}
+
+// A flat cell has the gradient 0, and so have others.
+void PreparedSurfaces::find_jumps(const Scene& scene, const SceneUnits& units, const std::vector<glm::dvec3>& gradients) {
+    const TetMesh& mesh = *scene.mesh;
+    const auto flat = [&](CellId cell) { return gradients[cell] == glm::dvec3(0) && is_flat(mesh, cell); };
+    // Within 1e-6 of the field's range float32 loses surfaces at points as well.
+    jump_ = std::ranges::any_of(
+        crossed_, [&](CellId cell) { return flat(cell) && jump_in(mesh, *scene.field, units, cell) > 1e-6; });
+    if (!jump_) return;
+    std::vector<std::uint8_t> touched(mesh.points.size());
+    for (CellId cell = 0; cell < mesh.tets.size(); ++cell)
+        if (flat(cell))
+            for (const VertexId v : mesh.tets[cell]) touched[v] = 1;
+    for (CellId cell = 0; cell < mesh.tets.size(); ++cell)
+        if (levels_[cell] >= 0 && std::ranges::any_of(mesh.tets[cell], [&](VertexId v) { return touched[v] != 0; }))
+            beside_jumps_.push_back(cell);
+}
+
+}  // namespace cellproj

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What backends need of isosurfaces and no view changes: on which side of which surfaces every cell lies, and the gradients that
+// shading takes for normals.
+//
+// Sides are told by the scalars that are drawn, normalized to the field's range and rounded to float32, and isovalues are rounded
+// in the same way: a point whose scalar is the isovalue stays on it (classify/isosurface.hpp: not below).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/tet_mesh.hpp"
+#include "render/surface_scene.hpp"
+
+namespace cellproj {
+
+struct Scene;
+struct SceneUnits;
+
+// The level of a scalar: how many isovalues it is not below, 0 .. #values. A segment crosses the surfaces between the levels of its
+// ends; a cell whose scalars have one level is crossed by none, whatever rounding does to scalars inside.
+class PreparedSurfaces {
+public:
+    static constexpr std::int32_t crossed_cell = -1, no_scalar = -2;
+
+    // Of a scene that has_surfaces; the scene's field must outlive it.
+    PreparedSurfaces(const Scene& scene, const SceneUnits& units);
+
+    const SurfaceScene& scene() const { return *scene_; }
+    // Normalized, ascending; equal where float32 cannot tell two isovalues apart.
+    std::span<const float> values() const { return values_; }
+
+    // #T: the level of all scalars of the cell, crossed_cell where its points have several, no_scalar where one is not finite.
+    std::span<const std::int32_t> levels() const { return levels_; }
+    std::span<const CellId> crossed() const { return crossed_; }  // ascending
+
+    // Rays pass a flat cell with no length. Where its scalars lie in no one plane, they jump there from one neighbour to the other, and
+    // surfaces lie in the jump. If there are such cells: all that are not crossed and touch a flat cell, so that it can be seen.
+    std::span<const CellId> beside_jumps() const { return beside_jumps_; }
+    bool jump() const { return jump_; }
+
+    // In the axes of the mesh, over the steepest: #T (flat), #P (smooth) or none (unlit). 0 where there is none.
+    std::span<const glm::vec3> gradients() const { return gradients_; }
+
+private:
+    void find_jumps(const Scene& scene, const SceneUnits& units, const std::vector<glm::dvec3>& gradients);
+
+    const SurfaceScene* scene_;
+    std::vector<float> values_;
+    std::vector<std::int32_t> levels_;
+    std::vector<CellId> crossed_;
+    std::vector<CellId> beside_jumps_;
+    bool jump_ = false;
+    std::vector<glm::vec3> gradients_;
+};
+
+// How many of `values`, ascending, s is not below.
+inline std::int32_t level_of(std::span<const float> values, float s) {
+    const float* first = values.data();
+    for (std::size_t count = values.size(); count > 0;) {
+        const std::size_t half = count / 2;
+        const bool above = !(s < first[half]);
+        first = above ? first + half + 1 : first;
+        count = above ? count - half - 1 : half;
+    }
+    return static_cast<std::int32_t>(first - values.data());
+}
+
+}  // namespace cellproj
