@@ -105,7 +105,7 @@ void draw_lines(Image& image, std::span<const Segment> lines, double width, cons
         for (int y = rows.y0; y < rows.y1; ++y) {
             // Of each row only the columns that the line can reach: long slanting lines leave most of their box alone.
             PixelBox near = rows;
-            if (d.y != 0) {
+            if (std::abs(d.x) < 1e6 * std::abs(d.y)) {
                 const double slope = d.x / d.y, around = reach * std::sqrt(1 + slope * slope) + std::abs(slope) + 1;
                 const double x = part.first.x + (y + 0.5 - part.first.y) * slope;
                 near.x0 = static_cast<int>(std::clamp(std::floor(x - around), double(rows.x0), double(rows.x1)));

@@ -186,6 +186,42 @@ TEST(AnnotationColorBar, MarksShowTheFateOfWhatLiesBeyond) {
     EXPECT_TRUE(same(image.at(middle, plan.bar.y1 + 4), {0, 0, 0, 0}));
 }
 
+std::shared_ptr<const SurfaceScene> three_surfaces() {
+    SurfaceScene surfaces;
+    surfaces.isosurfaces = IsoSurfaces({{0.25, {1, 0, 0}}, {0.5, {0, 1, 0}}, {2, {0, 0, 1}}});
+    return std::make_shared<const SurfaceScene>(surfaces);
+}
+
+// Of surfaces alone there is nothing in the bar but their bands, and their values beside it.
+TEST(AnnotationColorBar, SurfacesAreBands) {
+    for (const bool medium : {false, true}) {
+        Scene scene = scene_with(medium ? ramp() : TransferFunction(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}}));
+        scene.surfaces = three_surfaces();
+        for (const BarSide side : {BarSide::left, BarSide::bottom}) {
+            const ColorBarPlan plan = plan_of(scene, side);
+            EXPECT_EQ(plan.content.medium, medium);
+            EXPECT_EQ(plan.content.low, 0);
+            EXPECT_EQ(plan.content.high, 2);
+            EXPECT_EQ(plan.content.note, "");
+            Image image(512, 512);
+            draw_color_bar(image, plan);
+            const auto in_bar = [&](double s) {
+                const PixelBox slice = plan.slice(plan.bar, std::min(static_cast<int>(plan.distance(s)), plan.length() - 1));
+                return image.at(slice.x0 + slice.width() / 2, slice.y0 + slice.height() / 2);
+            };
+            EXPECT_TRUE(same(in_bar(0.25), {1, 0, 0, 1}));
+            EXPECT_TRUE(same(in_bar(0.5), {0, 1, 0, 1}));
+            EXPECT_EQ(in_bar(1.2).a, medium ? 1 : 0);
+            if (!medium) {
+                EXPECT_TRUE(same(in_bar(2), {0, 0, 1, 1}));
+                EXPECT_EQ(plan.ticks.ticks.size(), 3U);
+                EXPECT_EQ(plan.ticks.ticks[1].label, "0.5");
+                EXPECT_FALSE(plan.content.path);
+            }
+        }
+    }
+}
+
 TEST(AnnotationColorBar, TwoFieldsAreNamed) {
     Scene scene = scene_with({OpticalModel::density, {{0.5, {0, 0, 1}}, {3, {1, 0, 0}}}, {{-5, 0}, {0.9, 1}}});
     ScalarField other = *scene.field;
@@ -262,6 +298,39 @@ TEST(AnnotationColorBar, ConstantField) {
     Image image(512, 512);
     draw_color_bar(image, plan);
     EXPECT_TRUE(same(image.at(plan.bar.x0, plan.bar.y0), image.at(plan.bar.x0, plan.bar.y1 - 1)));
+}
+
+// ---- lines
+
+// Along a level line of two pixels two rows are full, and nothing else is touched but its round ends.
+TEST(AnnotationCanvas, LinesCoverTheirWidth) {
+    Image image(60, 40);
+    const Segment line{{10, 20}, {50, 20}};
+    draw_lines(image, {&line, 1}, 2, {glm::dvec3(1)}, whole(image));
+    for (int y = 0; y < 40; ++y)
+        for (int x = 11; x < 49; ++x) ASSERT_EQ(image.at(x, y).a, y == 19 || y == 20 ? 1 : 0);
+    for (int y = 0; y < 40; ++y) ASSERT_EQ(image.at(8, y).a + image.at(51, y).a, 0);
+}
+
+// Lines through the middle of the picture at any slope and of any length cover it there, and keep to their clip.
+TEST(AnnotationCanvas, LinesOfAnySlopeAndLength) {
+    const PixelBox clip{5, 5, 55, 35};
+    for (const double length : {3.0, 1e3, 1e9, 1e200})
+        for (const glm::dvec2 direction : {glm::dvec2(1, 0), {0, 1}, {1, 1e-320}, {1, 1e-9}, {1e-9, 1}, {1e-320, 1}, {0.6, -0.8}, {-0.999, 0.02}}) {
+            Image image(60, 40);
+            const Segment line{glm::dvec2(30.5, 20.5) - length * direction, glm::dvec2(30.5, 20.5) + length * direction};
+            draw_lines(image, {&line, 1}, 1, {glm::dvec3(1)}, clip);
+            if (length < 1e200) {
+                EXPECT_GT(image.at(30, 20).a, 0.99) << length << " " << direction.x << " " << direction.y;
+            }
+            for (int y = 0; y < 40; ++y)
+                for (int x = 0; x < 60; ++x) {
+                    ASSERT_TRUE(image.at(x, y).a >= 0 && image.at(x, y).a <= 1);
+                    if (!clip.contains(x, y)) {
+                        ASSERT_EQ(image.at(x, y).a, 0);
+                    }
+                }
+        }
 }
 
 // ---- axes and outline
