@@ -212,7 +212,7 @@ ColorBar describe_color_bar(const Scene& scene, const std::string& units, Scalar
     !bar.medium           ? describe_surfaces_alone(scene, bar)
     : scene.opacity_field ? describe_two_fields(scene, bar)
                           : describe_one_field(scene, bar);
-    bar.axis = bar.low >= 1e-300 ? axis : ScalarAxis::linear;
+    bar.axis = bar.low >= 1e-300 && bar.high <= 1e300 ? axis : ScalarAxis::linear;
     return bar;
 }
 
@@ -223,7 +223,8 @@ double ColorBarPlan::scalar(double distance) const {
 double ColorBarPlan::distance(double s) const {
     if (content.low == content.high) return length() / 2.0;
     const bool log = content.axis == ScalarAxis::log;
-    return length() * (log ? std::log(s / content.low) / std::log(content.high / content.low) : (s - content.low) / (content.high - content.low));
+    if (log) return length() * (std::log(s / content.low) / std::log(content.high / content.low));
+    return length() * ((s / 2 - content.low / 2) / (content.high / 2 - content.low / 2));  // halves: no range overflows
 }
 
 PixelBox ColorBarPlan::slice(const PixelBox& of, int i) const {

@@ -194,6 +194,23 @@ TEST(AnnotationColorBar, SurfacesAreBands) {
     }
 }
 
+// Isovalues may be any finite scalars.
+TEST(AnnotationColorBar, SurfacesOfAnyValueAreInTheBar) {
+    SurfaceScene surfaces;
+    surfaces.isosurfaces = IsoSurfaces({{-1.7e308}, {0.5}, {1.7e308}});
+    Scene scene = scene_with(ramp());
+    scene.surfaces = std::make_shared<const SurfaceScene>(surfaces);
+    for (const ScalarAxis axis : {ScalarAxis::linear, ScalarAxis::log}) {
+        const ColorBarPlan plan = plan_color_bar(describe_color_bar(scene, "", axis), BarSide::right, {0, 0, 512, 512}, *font(), plain_style());
+        EXPECT_EQ(plan.distance(-1.7e308), 0);
+        EXPECT_EQ(plan.distance(0.5), plan.length() / 2.0);
+        EXPECT_EQ(plan.distance(1.7e308), plan.length());
+        Image image(512, 512);
+        draw_color_bar(image, plan);
+        EXPECT_EQ(count_non_finite(image), 0U);
+    }
+}
+
 TEST(AnnotationColorBar, TwoFieldsAreNamed) {
     Scene scene = scene_with({OpticalModel::density, {{0.5, {0, 0, 1}}, {3, {1, 0, 0}}}, {{-5, 0}, {0.9, 1}}});
     ScalarField other = *scene.field;

@@ -146,6 +146,8 @@ TEST(AnnotationTicks, OfHardlyAnyRangeAreItsEnds) {
     EXPECT_EQ(nice_ticks(0, 1e-310, 5).high.label, "1×10⁻³¹⁰");
     EXPECT_EQ(nice_ticks(0, 0, 5).low.label, "0");
     EXPECT_EQ(nice_ticks(-1e300, 1e300, 5).common, "×10³⁰⁰");
+    EXPECT_TRUE(nice_ticks(-1.5e308, 1.5e308, 5).ticks.empty());
+    EXPECT_EQ(nice_ticks(-1.5e308, 1.5e308, 5).low.label, "−1.5×10³⁰⁸");
 }
 
 TEST(AnnotationTicks, OfLogarithmicAxes) {
