@@ -108,22 +108,26 @@ Camera Annotator::view_camera(const Camera& camera) const {
     return wider;
 }
 
+// The view at its place in the picture.
+Image Annotator::on_canvas(Image view) const {
+    if (view.width == size_.width && view.height == size_.height) return view;
+    Image picture(size_.width, size_.height);
+    for (int y = 0; y < view.height; ++y) std::copy_n(&view.at(0, y), view.width, &picture.at(view_.x0, view_.y0 + y));
+    return picture;
+}
+
 Image Annotator::compose(Image view, const Camera& camera) const {
     assert(view.width == view_.width() && view.height == view_.height());
     if (!annotations_.any()) return view;
     const Camera seen = view_camera(camera);
-    Image picture(size_.width, size_.height);
     if (annotations_.outline) {
         const BoxOutline outline = outline_of(box_, seen, view_size());
-        const Paint paint{style_.ink.color, outline_opacity};
-        Image behind(view.width, view.height);
-        draw_lines(behind, outline.behind, style_.line, paint, whole(behind));
-        for (std::size_t i = 0; i < view.pixels.size(); ++i)
-            if (behind.pixels[i].a > 0) view.pixels[i] += (1 - view.pixels[i].a) * behind.pixels[i];
+        Paint paint{style_.ink.color, outline_opacity, true};
+        draw_lines(view, outline.behind, style_.line, paint, whole(view));
+        paint.under = false;
         draw_lines(view, outline.before, style_.line, paint, whole(view));
     }
-    for (int y = 0; y < view.height; ++y)
-        std::copy_n(&view.at(0, y), view.width, &picture.at(view_.x0, view_.y0 + y));
+    Image picture = on_canvas(std::move(view));
     if (annotations_.axes) {
         const int side = triad_size(style_);
         draw_triad(picture, seen, intersection({view_.x0, view_.y1 - side, view_.x0 + side, view_.y1}, view_), *font_, style_);

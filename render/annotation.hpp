@@ -60,6 +60,7 @@ public:
     const std::optional<ColorBarPlan>& color_bar() const { return bar_; }
 
 private:
+    Image on_canvas(Image view) const;
     void place_lines(const std::string& text, double size, PixelBox& left_over, bool above);
 
     Annotations annotations_;

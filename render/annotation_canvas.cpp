@@ -60,8 +60,8 @@ void blend(Image& image, int x, int y, const Paint& paint, double coverage) {
     if (!(alpha > 0)) return;
     glm::vec4& pixel = image.at(x, y);
     const bool finite = std::isfinite(pixel.r) && std::isfinite(pixel.g) && std::isfinite(pixel.b) && std::isfinite(pixel.a);
-    const glm::dvec4 below = finite ? glm::dvec4(pixel) : glm::dvec4(0.0);
-    pixel = glm::vec4(glm::dvec4(alpha * paint.color, alpha) + (1.0 - alpha) * below);
+    const glm::dvec4 before = finite ? glm::dvec4(pixel) : glm::dvec4(0.0), painted(alpha * paint.color, alpha);
+    pixel = glm::vec4(paint.under ? before + (1.0 - before.a) * painted : painted + (1.0 - alpha) * before);
 }
 
 void fill(Image& image, const PixelBox& box, const Paint& paint, const PixelBox& clip) {
@@ -81,33 +81,45 @@ void frame(Image& image, const PixelBox& box, int width, const Paint& paint, con
 void draw_lines(Image& image, std::span<const Segment> lines, double width, const Paint& paint, const PixelBox& clip) {
     const double reach = width / 2 + 0.5;  // of the coverage from the middle of the line
     const glm::dvec2 low = glm::dvec2(clip.x0, clip.y0) - reach - 1.0, high = glm::dvec2(clip.x1, clip.y1) + reach + 1.0;
-    std::vector<float> coverage(static_cast<std::size_t>(clip.width()) * static_cast<std::size_t>(clip.height()), 0.0F);
-    const auto at = [&](int x, int y) -> float& {
-        return coverage[static_cast<std::size_t>(y - clip.y0) * static_cast<std::size_t>(clip.width()) + static_cast<std::size_t>(x - clip.x0)];
+    std::vector<Segment> parts;
+    PixelBox reached{clip.x1, clip.y1, clip.x0, clip.y0};  // by all of them
+    const auto pixels_near = [&](const Segment& part) {
+        return intersection(pixels_of(glm::min(part.first, part.second) - reach, glm::max(part.first, part.second) + reach), clip);
     };
-    for (const Segment& line : lines) {
-        const std::optional<Segment> part = clipped(line, low, high);
-        if (!part) continue;
-        const glm::dvec2 a = glm::min(part->first, part->second), b = glm::max(part->first, part->second);
-        const PixelBox rows = intersection(pixels_of(a - reach, b + reach), clip);
-        const glm::dvec2 d = part->second - part->first;
+    for (const Segment& line : lines)
+        if (const std::optional<Segment> part = clipped(line, low, high)) {
+            const PixelBox near = pixels_near(*part);
+            if (near.width() == 0 || near.height() == 0) continue;
+            parts.push_back(*part);
+            reached = {std::min(reached.x0, near.x0), std::min(reached.y0, near.y0), std::max(reached.x1, near.x1), std::max(reached.y1, near.y1)};
+        }
+    if (parts.empty()) return;
+
+    std::vector<float> coverage(static_cast<std::size_t>(reached.width()) * static_cast<std::size_t>(reached.height()), 0.0F);
+    const auto at = [&](int x, int y) -> float& {
+        return coverage[static_cast<std::size_t>(y - reached.y0) * static_cast<std::size_t>(reached.width()) + static_cast<std::size_t>(x - reached.x0)];
+    };
+    for (const Segment& part : parts) {
+        const PixelBox rows = pixels_near(part);
+        const glm::dvec2 d = part.second - part.first;
         for (int y = rows.y0; y < rows.y1; ++y) {
             // Of each row only the columns that the line can reach: long slanting lines leave most of their box alone.
             PixelBox near = rows;
-            if (d.y != 0) {
+            if (std::abs(d.x) < 1e6 * std::abs(d.y)) {
                 const double slope = d.x / d.y, around = reach * std::sqrt(1 + slope * slope) + std::abs(slope) + 1;
-                const double x = part->first.x + (y + 0.5 - part->first.y) * slope;
+                const double x = part.first.x + (y + 0.5 - part.first.y) * slope;
                 near.x0 = static_cast<int>(std::clamp(std::floor(x - around), double(rows.x0), double(rows.x1)));
                 near.x1 = static_cast<int>(std::clamp(std::ceil(x + around), double(rows.x0), double(rows.x1)));
             }
             for (int x = near.x0; x < near.x1; ++x) {
-                const double covered = std::clamp(reach - distance_to(*part, center(x, y)), 0.0, 1.0);
+                const double covered = std::clamp(reach - distance_to(part, center(x, y)), 0.0, 1.0);
                 at(x, y) = std::max(at(x, y), static_cast<float>(covered));
             }
         }
     }
-    for (int y = clip.y0; y < clip.y1; ++y)
-        for (int x = clip.x0; x < clip.x1; ++x) blend(image, x, y, paint, at(x, y));
+    for (int y = reached.y0; y < reached.y1; ++y)
+        for (int x = reached.x0; x < reached.x1; ++x)
+            if (at(x, y) > 0) blend(image, x, y, paint, at(x, y));
 }
 
 void fill_convex(Image& image, std::span<const glm::dvec2> corners, const Paint& paint, const PixelBox& clip) {

@@ -31,9 +31,10 @@ PixelBox whole(const Image& image);
 struct Paint {
     glm::dvec3 color{0.0};
     double opacity = 1;
+    bool under = false;  // what is in the picture already
 };
 
-// Over one pixel of the picture; one that is not finite counts as empty, as in a PNG.
+// Over (or under) one pixel of the picture; one that is not finite counts as empty, as in a PNG.
 void blend(Image& image, int x, int y, const Paint& paint, double coverage = 1);
 
 void fill(Image& image, const PixelBox& box, const Paint& paint, const PixelBox& clip);

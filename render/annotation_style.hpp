@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What all annotations of a picture share: sizes relative to its shorter side, and paint that can be seen on its background.
-// Private to render/annotation*.
 #pragma once
 
 #include "project/camera.hpp"

@@ -122,10 +122,10 @@ std::string number_text(double value, int digits) {
 }
 
 Ticks nice_ticks(double low, double high, int most) {
-    assert(low <= high && std::max(-low, high) <= 1e300 && most >= 1);
+    assert(std::isfinite(low) && low <= high && std::isfinite(high) && most >= 1);
     if (low == high) return {{}, {low, number_text(low, most_digits)}, {high, number_text(high, most_digits)}, {}};
     const double largest = std::max(std::abs(low), std::abs(high));
-    if (high - low < std::max(narrowest_share * largest, 1e-290)) return {{}, {low, full_text(low)}, {high, full_text(high)}, {}};
+    if (largest > 1e300 || high - low < std::max(narrowest_share * largest, 1e-290)) return {{}, {low, full_text(low)}, {high, full_text(high)}, {}};
 
     const Step step = step_of((high - low) / most);
     const int e = step.exponent;

@@ -22,10 +22,10 @@ struct Ticks {
     std::string common;
 };
 
-// At most `most` + 1 ticks (most ≥ 1) over finite low ≤ high of magnitude up to 1e300. The step is the smallest of 1, 2, 5 · 10^e that
+// At most `most` + 1 ticks (most ≥ 1) over finite low ≤ high. The step is the smallest of 1, 2, 5 · 10^e that
 // is at least (high − low)/most. Labels that would need more than six digits leave an offset out, numbers from 1e6 and below 1e-3
 // a power of ten. No ticks, but ends in full digits, where the range is too narrow for float64 to tell ten ticks apart or
-// narrower than 1e-290; low = high gives the ends alone, to six digits.
+// narrower than 1e-290, or where an end is beyond 1e300; low = high gives the ends alone, to six digits.
 Ticks nice_ticks(double low, double high, int most);
 
 // The same for an axis of ln s, 0 < low ≤ high, 1e-300 ≤ low: powers of ten, with 2 and 5 times of them where there is room, or every second,

@@ -1,62 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Colour bar, axes, outline and layout: against the transfer function, the camera's projection and rays through a box.
+// Colour bar, lines, axes and outline: against the transfer function, the camera's projection and rays through a box.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include <glm/geometric.hpp>
 
-#include "mesh/error.hpp"
-#include "render/annotation.hpp"
+#include "render/annotation_color_bar.hpp"
 #include "render/annotation_outline.hpp"
 #include "render/annotation_triad.hpp"
-#include "render/renderer.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/support/annotation_fixtures.hpp"
 
 namespace cellproj {
 namespace {
 
-using testing_support::grid_mesh;
-using testing_support::linear;
+using testing_support::font;
+using testing_support::numbered_picture;
+using testing_support::peaks;
 using testing_support::ramp;
-using testing_support::scene_of;
-using testing_support::view_of_unit_cube;
-
-std::shared_ptr<const Font> font() {
-    static const auto shared = std::make_shared<const Font>();
-    return shared;
-}
-
-// A field 0..1 (`scale` times it, plus `offset`) in the unit cube.
-Scene scene_with(TransferFunction transfer, double scale = 1, double offset = 0, const std::string& name = "p") {
-    const TetMesh mesh = grid_mesh(3);
-    ScalarField field = testing_support::point_field(mesh, [&](const glm::dvec3& p) { return offset + scale * linear(p); });
-    field.name = name;
-    return scene_of(mesh, std::move(field), std::move(transfer));
-}
-
-// Every channel of every pixel differs from any other one, and none is empty.
-Image numbered_picture(ImageSize size, float alpha = 0.5F) {
-    Image image(size.width, size.height);
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = {1e-6F * static_cast<float>(i % 100000), 0.125F, 0.25F, alpha};
-    return image;
-}
-
-bool same(const glm::vec4& a, const glm::vec4& b) { return a == b; }
+using testing_support::same;
+using testing_support::scene_with;
 
 AnnotationStyle plain_style(double em = 13.5) { return {em, 0.8 * em, 1, {glm::dvec3(0)}, {glm::dvec3(1)}}; }
 
 ColorBarPlan plan_of(const Scene& scene, BarSide side, const PixelBox& within = {0, 0, 512, 512}, double em = 13.5) {
     return plan_color_bar(describe_color_bar(scene, "Pa"), side, within, *font(), plain_style(em));
 }
-
-const TransferFunction peaks{OpticalModel::density, {{0.1, {0.1, 0.2, 0.9}}, {0.5, {1.0, 0.6, 0.0}}, {0.5, {0.0, 0.6, 0.2}}, {0.9, {1, 1, 1}}},
-                             {{0.2, 0}, {0.4, 3}, {0.6, 0}, {0.6, 1}, {0.9, 2}}};
 
 TEST(AnnotationColorBar, PixelsAreTheTransferFunctions) {
     for (const BarSide side : {BarSide::left, BarSide::right, BarSide::bottom}) {
@@ -186,6 +158,59 @@ TEST(AnnotationColorBar, MarksShowTheFateOfWhatLiesBeyond) {
     EXPECT_TRUE(same(image.at(middle, plan.bar.y1 + 4), {0, 0, 0, 0}));
 }
 
+std::shared_ptr<const SurfaceScene> three_surfaces() {
+    SurfaceScene surfaces;
+    surfaces.isosurfaces = IsoSurfaces({{0.25, {1, 0, 0}}, {0.5, {0, 1, 0}}, {2, {0, 0, 1}}});
+    return std::make_shared<const SurfaceScene>(surfaces);
+}
+
+// Of surfaces alone there is nothing in the bar but their bands, and their values beside it.
+TEST(AnnotationColorBar, SurfacesAreBands) {
+    for (const bool medium : {false, true}) {
+        Scene scene = scene_with(medium ? ramp() : TransferFunction(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}}));
+        scene.surfaces = three_surfaces();
+        for (const BarSide side : {BarSide::left, BarSide::bottom}) {
+            const ColorBarPlan plan = plan_of(scene, side);
+            EXPECT_EQ(plan.content.medium, medium);
+            EXPECT_EQ(plan.content.low, 0);
+            EXPECT_EQ(plan.content.high, 2);
+            EXPECT_EQ(plan.content.note, "");
+            Image image(512, 512);
+            draw_color_bar(image, plan);
+            const auto in_bar = [&](double s) {
+                const PixelBox slice = plan.slice(plan.bar, std::min(static_cast<int>(plan.distance(s)), plan.length() - 1));
+                return image.at(slice.x0 + slice.width() / 2, slice.y0 + slice.height() / 2);
+            };
+            EXPECT_TRUE(same(in_bar(0.25), {1, 0, 0, 1}));
+            EXPECT_TRUE(same(in_bar(0.5), {0, 1, 0, 1}));
+            EXPECT_EQ(in_bar(1.2).a, medium ? 1 : 0);
+            if (!medium) {
+                EXPECT_TRUE(same(in_bar(2), {0, 0, 1, 1}));
+                EXPECT_EQ(plan.ticks.ticks.size(), 3U);
+                EXPECT_EQ(plan.ticks.ticks[1].label, "0.5");
+                EXPECT_FALSE(plan.content.path);
+            }
+        }
+    }
+}
+
+// Isovalues may be any finite scalars.
+TEST(AnnotationColorBar, SurfacesOfAnyValueAreInTheBar) {
+    SurfaceScene surfaces;
+    surfaces.isosurfaces = IsoSurfaces({{-1.7e308}, {0.5}, {1.7e308}});
+    Scene scene = scene_with(ramp());
+    scene.surfaces = std::make_shared<const SurfaceScene>(surfaces);
+    for (const ScalarAxis axis : {ScalarAxis::linear, ScalarAxis::log}) {
+        const ColorBarPlan plan = plan_color_bar(describe_color_bar(scene, "", axis), BarSide::right, {0, 0, 512, 512}, *font(), plain_style());
+        EXPECT_EQ(plan.distance(-1.7e308), 0);
+        EXPECT_EQ(plan.distance(0.5), plan.length() / 2.0);
+        EXPECT_EQ(plan.distance(1.7e308), plan.length());
+        Image image(512, 512);
+        draw_color_bar(image, plan);
+        EXPECT_EQ(count_non_finite(image), 0U);
+    }
+}
+
 TEST(AnnotationColorBar, TwoFieldsAreNamed) {
     Scene scene = scene_with({OpticalModel::density, {{0.5, {0, 0, 1}}, {3, {1, 0, 0}}}, {{-5, 0}, {0.9, 1}}});
     ScalarField other = *scene.field;
@@ -219,7 +244,7 @@ TEST(AnnotationColorBar, KeepsToItsArea) {
     std::uniform_real_distribution<double> number(-1, 1);
     const std::vector<std::string> names{"p", "StagnationEnergyPerUnitVolumeOfTheMixture", "ρ", ""};
     const std::vector<ImageSize> sizes{{200, 150}, {512, 512}, {300, 900}, {1920, 1080}};
-    for (int trial = 0; trial < (CELLPROJ_SANITIZED ? 16 : 64); ++trial) {
+    for (int trial = 0; trial < (CELLPROJ_SANITIZED ? 12 : 64); ++trial) {
         const double width = std::pow(10.0, 8 * number(random)), low = number(random) * std::pow(10.0, 8 * number(random)), high = low + width;
         const Scene scene = scene_with({OpticalModel::density, {{low, {0, 0, 1}}, {high, {1, 0, 0}}}, {{low, trial % 2 ? 1.0 : 0.0}, {high, 2}}},
                                        trial % 5 ? 2 * width : 1, trial % 5 ? low - width / 2 : low, names[static_cast<std::size_t>(trial % 4)]);
@@ -262,6 +287,39 @@ TEST(AnnotationColorBar, ConstantField) {
     Image image(512, 512);
     draw_color_bar(image, plan);
     EXPECT_TRUE(same(image.at(plan.bar.x0, plan.bar.y0), image.at(plan.bar.x0, plan.bar.y1 - 1)));
+}
+
+// ---- lines
+
+// Along a level line of two pixels two rows are full, and nothing else is touched but its round ends.
+TEST(AnnotationCanvas, LinesCoverTheirWidth) {
+    Image image(60, 40);
+    const Segment line{{10, 20}, {50, 20}};
+    draw_lines(image, {&line, 1}, 2, {glm::dvec3(1)}, whole(image));
+    for (int y = 0; y < 40; ++y)
+        for (int x = 11; x < 49; ++x) ASSERT_EQ(image.at(x, y).a, y == 19 || y == 20 ? 1 : 0);
+    for (int y = 0; y < 40; ++y) ASSERT_EQ(image.at(8, y).a + image.at(51, y).a, 0);
+}
+
+// Lines through the middle of the picture at any slope and of any length cover it there, and keep to their clip.
+TEST(AnnotationCanvas, LinesOfAnySlopeAndLength) {
+    const PixelBox clip{5, 5, 55, 35};
+    for (const double length : {3.0, 1e3, 1e9, 1e200})
+        for (const glm::dvec2 direction : {glm::dvec2(1, 0), {0, 1}, {1, 1e-320}, {1, 1e-9}, {1e-9, 1}, {1e-320, 1}, {0.6, -0.8}, {-0.999, 0.02}}) {
+            Image image(60, 40);
+            const Segment line{glm::dvec2(30.5, 20.5) - length * direction, glm::dvec2(30.5, 20.5) + length * direction};
+            draw_lines(image, {&line, 1}, 1, {glm::dvec3(1)}, clip);
+            if (length < 1e200) {
+                EXPECT_GT(image.at(30, 20).a, 0.99) << length << " " << direction.x << " " << direction.y;
+            }
+            for (int y = 0; y < 40; ++y)
+                for (int x = 0; x < 60; ++x) {
+                    ASSERT_TRUE(image.at(x, y).a >= 0 && image.at(x, y).a <= 1);
+                    if (!clip.contains(x, y)) {
+                        ASSERT_EQ(image.at(x, y).a, 0);
+                    }
+                }
+        }
 }
 
 // ---- axes and outline
@@ -408,188 +466,6 @@ TEST(AnnotationOutline, AnyScaleAndPlace) {
         ASSERT_EQ(outline.before.size(), plain.before.size());
         for (std::size_t i = 0; i < plain.before.size(); ++i) EXPECT_LT(glm::distance(outline.before[i].first, plain.before[i].first), 1e-3);
     }
-}
-
-// ---- the whole picture
-
-const Annotations everything{.color_bar = BarSide::right, .units = "Pa", .axes = true, .outline = true, .title = "Title"};
-
-TEST(Annotator, WithoutAnnotationsNothingChanges) {
-    const Annotator annotator({}, scene_with(ramp()), {64, 48}, nullptr);
-    EXPECT_EQ(annotator.view_size().width, 64);
-    EXPECT_EQ(annotator.view_size().height, 48);
-    const Camera camera = view_of_unit_cube(Camera::Projection::perspective);
-    EXPECT_EQ(to_json(annotator.view_camera(camera)), to_json(camera));
-    const Image before = numbered_picture({64, 48});
-    const Image after = annotator.compose(before, camera);
-    EXPECT_TRUE(before.pixels == after.pixels);
-}
-
-// The view is the renderer's picture bit for bit; beside it is what stands there for the reader, and no pixel of text is cut off.
-TEST(Annotator, KeepsThePictureOfTheView) {
-    const Camera camera = view_of_unit_cube(Camera::Projection::perspective);
-    for (const BarSide side : {BarSide::left, BarSide::right, BarSide::bottom})
-        for (const ImageSize size : {ImageSize{512, 512}, side == BarSide::bottom ? ImageSize{320, 240} : ImageSize{200, 150}, {1280, 720}}) {
-            Annotations annotations = everything;
-            annotations.color_bar = side;
-            annotations.axes = annotations.outline = false;
-            const Annotator annotator(annotations, scene_with(peaks), size, font());
-            const Image view = numbered_picture(annotator.view_size());
-            const Image picture = annotator.compose(view, camera);
-            ASSERT_EQ(picture.width, size.width);
-            ASSERT_EQ(picture.height, size.height);
-            for (int y = 0; y < view.height; ++y)
-                for (int x = 0; x < view.width; ++x)
-                    ASSERT_TRUE(same(view.at(x, y), picture.at(annotator.view().x0 + x, annotator.view().y0 + y)));
-            // The picture's own border is free.
-            for (int x = 0; x < size.width; ++x) ASSERT_EQ(picture.at(x, 0).a + picture.at(x, size.height - 1).a, annotator.view().y1 == size.height && annotator.view().x0 <= x && x < annotator.view().x1 ? 0.5F : 0.0F);
-        }
-}
-
-// All that the camera shows in the whole picture lies in the view, which it fills in one direction.
-TEST(Annotator, ShowsInTheViewWhatThePictureShowed) {
-    for (const ImageSize size : {ImageSize{512, 512}, {1920, 1080}, {300, 700}})
-        for (const BarSide side : {BarSide::left, BarSide::bottom})
-            for (const auto projection : {Camera::Projection::parallel, Camera::Projection::perspective}) {
-                Annotations annotations = everything;
-                annotations.color_bar = side;
-                const Annotator annotator(annotations, scene_with(peaks), size, font());
-                Camera camera = view_of_unit_cube(projection);
-                camera.fov_y_degrees = 70;
-                const ScreenTransform whole_picture(camera, size), view(annotator.view_camera(camera), annotator.view_size());
-                const double w = annotator.view().width(), h = annotator.view().height();
-                const double scale = std::min(w / size.width, h / size.height);
-                for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(size.width, size.height), glm::dvec2(0.3 * size.width, size.height)}) {
-                    const ScreenTransform::Ray ray = whole_picture.ray(corner);
-                    const glm::dvec2 seen = view.to_screen(view.to_eye(ray.origin + 5.0 * ray.direction));
-                    const glm::dvec2 expected = 0.5 * glm::dvec2(w, h) + scale * (corner - 0.5 * glm::dvec2(size.width, size.height));
-                    EXPECT_LT(glm::distance(seen, expected), 1e-8 * size.width);
-                }
-            }
-}
-
-// A volume that lets nothing through hides what is behind it: from inside of the box all edges are.
-TEST(Annotator, OpaqueVolumeHidesEdgesBehindIt) {
-    Annotations annotations{.outline = true};
-    const Annotator annotator(annotations, scene_with(ramp()), {80, 60}, nullptr);
-    Camera camera;
-    camera.eye = {0.5, 0.5, 0.5};
-    camera.center = {0.9, 0.6, 0.5};
-    camera.up = {0, 0, 1};
-    camera.fov_y_degrees = 100;
-    const Image opaque = numbered_picture({80, 60}, 1.0F), empty(80, 60);
-    EXPECT_TRUE(annotator.compose(opaque, camera).pixels == opaque.pixels);
-    EXPECT_FALSE(annotator.compose(empty, camera).pixels == empty.pixels);
-
-    // Half of the light of an edge behind passes a volume of opacity ½; edges before it are not dimmed.
-    const Image half = numbered_picture({80, 60}, 0.5F);
-    const Image dimmed = annotator.compose(half, camera), full = annotator.compose(empty, camera);
-    for (std::size_t i = 0; i < half.pixels.size(); ++i)
-        ASSERT_NEAR(dimmed.pixels[i].a - 0.5F, 0.5F * full.pixels[i].a, 1e-6F);
-    camera = view_of_unit_cube(Camera::Projection::parallel);
-    const Image before = annotator.compose(opaque, camera);
-    const BoxOutline outline = outline_of({glm::dvec3(0), glm::dvec3(1)}, camera, {80, 60});
-    for (int y = 0; y < 60; ++y)
-        for (int x = 0; x < 80; ++x) {
-            double nearest = 1e9;
-            for (const auto& [a, b] : outline.before) {
-                const glm::dvec2 p(x + 0.5, y + 0.5), d = b - a;
-                nearest = std::min(nearest, glm::distance(p, a + std::clamp(glm::dot(p - a, d) / glm::dot(d, d), 0.0, 1.0) * d));
-            }
-            // Lines are a pixel thick, and anti-aliasing takes half a pixel more on both sides.
-            const bool changed = !same(before.at(x, y), opaque.at(x, y));
-            if (nearest < 0.9) {
-                ASSERT_TRUE(changed) << x << " " << y;
-            } else if (nearest > 1.01) {
-                ASSERT_FALSE(changed) << x << " " << y;
-            }
-        }
-}
-
-TEST(Annotator, InkIsSeenOnItsBackground) {
-    for (const glm::dvec3 background : {glm::dvec3(0), glm::dvec3(1), glm::dvec3(0.5), glm::dvec3(0.1, 0.1, 0.5), glm::dvec3(1, 1, 0)}) {
-        const Annotator annotator({.title = "■", .background = background}, scene_with(ramp()), {512, 512}, font());
-        const Image picture = annotator.compose(Image(annotator.view_size().width, annotator.view_size().height), {});
-        const auto darkest = std::max_element(picture.pixels.begin(), picture.pixels.end(), [](const auto& a, const auto& b) { return a.a < b.a; });
-        ASSERT_EQ(darkest->a, 1);
-        EXPECT_GT(glm::distance(glm::dvec3(*darkest), background), 0.4) << background.x;
-    }
-}
-
-TEST(Annotator, PixelsThatAreNotFiniteCountAsEmpty) {
-    Image image(1, 1);
-    image.at(0, 0) = glm::vec4(std::numeric_limits<float>::quiet_NaN());
-    blend(image, 0, 0, {{0, 0, 1}, 0.5}, 1);
-    EXPECT_TRUE(same(image.at(0, 0), {0, 0, 0.5F, 0.5F}));
-}
-
-void expect_refused(const Annotations& annotations, ImageSize size, const std::string& words) {
-    try {
-        const Annotator refused(annotations, scene_with(peaks), size, font());
-        FAIL() << size.width << "x" << size.height;
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::option);
-        EXPECT_EQ(error.place(), "--size");
-        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
-}
-
-TEST(Annotator, PicturesThatAreTooSmallAreRefused) {
-    expect_refused(everything, {64, 64}, "at least 96x96");
-    expect_refused({.axes = true}, {1000, 95}, "at least 96x96");
-    expect_refused(everything, {100, 100}, "leaves half");
-    std::string long_title;
-    for (int i = 0; i < 200; ++i) long_title += "word ";
-    expect_refused({.title = long_title}, {512, 512}, "leaves half");
-    const Annotator outline_of_any({.outline = true}, scene_with(peaks), {1, 1}, nullptr);
-    EXPECT_EQ(outline_of_any.view_size().width, 1);
-}
-
-// ---- the command
-
-class AnnotationCommand : public testing_support::FolderTest {
-protected:
-    void SetUp() override {
-        FolderTest::SetUp();
-        write("cube.vtk",
-              "# vtk DataFile Version 3.0\ncube\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n"
-              "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\nCELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n"
-              "POINT_DATA 8\nSCALARS p double 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7\n");
-    }
-
-    testing_support::Outcome run(const std::string& arguments) const { return testing_support::run_program(folder_, "render cube.vtk " + arguments); }
-};
-
-TEST_F(AnnotationCommand, DrawsAndSaysWhatIsClamped) {
-    const auto outcome = run("-o all.png --size 200x150 --range 1,6 --color-bar left --axes --outline --title 'A title' --units Pa --background 0,0,0");
-    EXPECT_EQ(outcome.code, 0) << outcome.text;
-    EXPECT_NE(outcome.text.find("cellproj: note: p: 12 % of the values lie below 1 and are not drawn; 12 % lie above 6 and are drawn as 6.\n"), std::string::npos)
-        << outcome.text;
-    EXPECT_NE(content("all.png").find("cellproj note"), std::string::npos);
-    // Of several pictures it is said once.
-    const auto orbit = run("-o orbit.png --size 200x150 --range 1,6 --color-bar --frames 3 --orbit 90");
-    EXPECT_EQ(orbit.code, 0) << orbit.text;
-    EXPECT_EQ(orbit.text.find("note:"), orbit.text.rfind("note:")) << orbit.text;
-    EXPECT_EQ(run("-o inside.png --size 200x150 --range 0,7 --color-bar bottom").text.find("note:"), std::string::npos);
-}
-
-TEST_F(AnnotationCommand, RefusesBeforeReading) {
-    const auto refused = [&](const std::string& arguments, int code, const std::string& words) {
-        const auto outcome = testing_support::run_program(folder_, "render missing.vtk " + arguments);
-        EXPECT_EQ(outcome.code, code) << outcome.text;
-        EXPECT_NE(outcome.text.find(words), std::string::npos) << outcome.text;
-    };
-    refused("-o a.exr --outline", 1, "an EXR holds what was computed and nothing else");
-    refused("-o a.png --axes --size 64x64", 1, "--size: expected at least 96x96");
-    refused("-o a.png --title T --font none.ttf", 1, "--font: expected a font file");
-    refused("-o a.png --color-bar up", 2, "up is not left, right or bottom");
-    refused("-o a.png --units Pa", 2, "--units requires --color-bar");
-}
-
-TEST_F(AnnotationCommand, NamesCharactersThatTheFontLacks) {
-    const auto outcome = run("-o a.png --size 128x128 --title 中");
-    EXPECT_EQ(outcome.code, 0);
-    EXPECT_NE(outcome.text.find("U+4E2D"), std::string::npos) << outcome.text;
 }
 
 }  // namespace
