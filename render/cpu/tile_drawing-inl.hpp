@@ -349,7 +349,7 @@ HWY_INLINE void add_group(D d, const ScreenCells& cells, const std::uint32_t* gr
         if constexpr (surfaces) {  // one by one: many are found again in float64
             const Precision precision = precision_of(cells, tile.planes, k, group[k], tile);
             if (flat && precision == Precision::float32) continue;
-            find_hits<true>(tile.planes, k, tile.hits, margin_of<perspective>(tile.planes, k, precision));
+            find_hits<true>(tile.planes, k, tile.hits, flat ? 1e38F : margin_of<perspective>(tile.planes, k, precision));
             const std::size_t hits = tile.hits.count;
             finish_hits();
             complete_fragments<perspective>(cells, group[k], precision, tile.fragments.count - hits, tile);
