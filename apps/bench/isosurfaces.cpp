@@ -178,6 +178,9 @@ void draw_frames(benchmark::State& state, const Scene& scene) {
     const PreparedSurfaces surfaces(scene, SceneUnits{bounds(scene.mesh->points).diagonal() / 2, values.low, values.high});
     state.counters["crossed"] = static_cast<double>(surfaces.crossed().size());
     state.counters["fragments"] = static_cast<double>(statistics.counts.fragments);
+    state.counters["sort"] = statistics.ms.sort;
+    state.counters["project"] = statistics.ms.project;
+    state.counters["draw"] = statistics.ms.draw;
 }
 
 // At the quantiles of the field, so that each crosses cells.

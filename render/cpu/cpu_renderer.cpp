@@ -163,13 +163,15 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
                             : quality.order_per_pixel         ? Drawing::by_pixels
                                                               : Drawing::by_cells;
     // Pixels that sort their own fragments want cells nearly sorted, no more.
-    const ViewOrder order = drawing == Drawing::nearest_surfaces
-                                ? ViewOrder{prepared_->surfaces()->crossed(), {}}
-                                : prepared_->order(camera, size, drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order, &order_report);
+    ViewOrder order;
+    if (drawing != Drawing::nearest_surfaces)
+        order = prepared_->order(camera, size, drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order, &order_report);
     statistics.ms.sort = sort.ms();
 
     const Stopwatch projecting;
     mesh_.set_view(camera, size);
+    // In any order; nearly sorted ones hide most of each other.
+    if (drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(prepared_->surfaces()->crossed());
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
     if (prepared_->surfaces()) trails_.assign(image.pixels.size(), {});
