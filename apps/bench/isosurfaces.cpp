@@ -178,6 +178,9 @@ void draw_frames(benchmark::State& state, const Scene& scene) {
     const PreparedSurfaces surfaces(scene, SceneUnits{bounds(scene.mesh->points).diagonal() / 2, values.low, values.high});
     state.counters["crossed"] = static_cast<double>(surfaces.crossed().size());
     state.counters["fragments"] = static_cast<double>(statistics.counts.fragments);
+    state.counters["sort"] = statistics.ms.sort;
+    state.counters["project"] = statistics.ms.project;
+    state.counters["draw"] = statistics.ms.draw;
 }
 
 // At the quantiles of the field, so that each crosses cells.
@@ -211,18 +214,18 @@ void draw_blunt_fin(benchmark::State& state, Shading shading, bool medium, const
 void CpuIsoCount(benchmark::State& state, Shading shading, double opacity, bool medium) {
     draw_blunt_fin(state, shading, medium, [&](const ScalarField& field) { return at_quantiles(field, state.range(0), opacity); });
 }
-BENCHMARK_CAPTURE(CpuIsoCount, opaque_flat, Shading::flat, 1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(CpuIsoCount, opaque_smooth, Shading::smooth, 1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(CpuIsoCount, translucent_flat, Shading::flat, 0.1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(CpuIsoCount, translucent_smooth, Shading::smooth, 0.1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(CpuIsoCount, medium_smooth, Shading::smooth, 0.1, true)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoCount, opaque_flat, Shading::flat, 1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoCount, opaque_smooth, Shading::smooth, 1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoCount, translucent_flat, Shading::flat, 0.1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoCount, translucent_smooth, Shading::smooth, 0.1, false)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoCount, medium_smooth, Shading::smooth, 0.1, true)->Arg(1)->Arg(2)->Arg(10)->Arg(100)->Arg(1000)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 void CpuIsoSameCells(benchmark::State& state, double opacity, bool medium) {
     draw_blunt_fin(state, Shading::smooth, medium, [&](const ScalarField& field) { return in_the_same_cells(field, state.range(0), opacity); });
 }
-BENCHMARK_CAPTURE(CpuIsoSameCells, opaque, 1, false)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(CpuIsoSameCells, translucent, 0.1, false)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(CpuIsoSameCells, medium, 0.1, true)->Arg(2)->Arg(10)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoSameCells, opaque, 1, false)->Arg(2)->Arg(10)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoSameCells, translucent, 0.1, false)->Arg(2)->Arg(10)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoSameCells, medium, 0.1, true)->Arg(2)->Arg(10)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 // Three opaque surfaces alone, by the nearest one of each pixel, against the path of mixed scenes: a medium that nobody sees. 67 boxes
 // along an edge: 1.5M tetrahedra.
@@ -231,7 +234,7 @@ void CpuIsoOpaqueAlone(benchmark::State& state, bool mixed) {
     const TransferFunction thin(OpticalModel::density, {{0, glm::dvec3(1)}}, {{0, 1e-30}});
     draw_frames(state, scene_of(waves_in(state.range(0)), surfaces, Shading::smooth, mixed ? thin : nothing));
 }
-BENCHMARK_CAPTURE(CpuIsoOpaqueAlone, nearest, false)->Arg(34)->Arg(67)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(CpuIsoOpaqueAlone, mixed, true)->Arg(34)->Arg(67)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoOpaqueAlone, nearest, false)->Arg(34)->Arg(67)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(CpuIsoOpaqueAlone, mixed, true)->Arg(34)->Arg(67)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 }  // namespace

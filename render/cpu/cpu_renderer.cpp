@@ -175,8 +175,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
         [&] {
             // Pixels that sort their own fragments want cells nearly sorted, no more.
             const auto method = drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order;
-            order = drawing == Drawing::nearest_surfaces ? ViewOrder{prepared_->surfaces()->crossed(), {}}
-                                                         : prepared_->order(camera, size, method, &order_report);
+            if (drawing != Drawing::nearest_surfaces) order = prepared_->order(camera, size, method, &order_report);
         },
         [&] {
             mesh_.set_view(camera, size);
@@ -185,6 +184,8 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     statistics.ms.sort = sort.ms();
 
     const Stopwatch projecting;
+    // In any order; nearly sorted ones hide most of each other.
+    if (drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(prepared_->surfaces()->crossed());
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
     if (prepared_->surfaces()) trails_.assign(image.pixels.size(), {});

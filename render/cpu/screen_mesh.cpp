@@ -17,7 +17,6 @@ namespace {
 
 // Products of such coordinates stay finite in float32; no pixel lies beyond.
 double bounded(double pixels) { return std::clamp(pixels, -1e12, 1e12); }
-float screen_coordinate(double pixels) { return static_cast<float>(bounded(pixels)); }
 
 SurfaceLighting for_tiles(const Lighting& lighting) {
     SurfaceLighting result{lighting.ambient, static_cast<float>(lighting.exponent), lighting.two_sided, {}};
@@ -124,8 +123,12 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
         bool behind = false;
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             const glm::dvec3 place = transform_.to_eye((mesh.points[i] - eye_) / unit);
-            points_[i] = on_screen({place, points_[i].scalar});
-            if (precise) precise_points_[i] = precisely_on_screen(place);
+            if (precise && has_place(place)) {
+                precise_points_[i] = precisely_on_screen(place);
+                points_[i] = rounded(precise_points_[i], points_[i].scalar);
+            } else {
+                points_[i] = on_screen({place, points_[i].scalar});
+            }
             behind |= points_[i].nearness == behind_near_plane;
         }
         if (behind) near_points = true;
@@ -137,20 +140,21 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
 // Perspective cannot show what lies behind the near plane.
 bool ScreenMesh::has_place(const glm::dvec3& p) const { return !transform_.perspective() || p.z >= near_depth_ * (1.0 - 1e-9); }
 
-// Parallel views have the same nearness as on_screen; in perspective it is not relative to the far side.
+// Whole nearness; for points that have a place.
 glm::dvec3 ScreenMesh::precisely_on_screen(const glm::dvec3& p) const {
-    if (!has_place(p)) return glm::dvec3(0.0);
     const glm::dvec2 screen = transform_.to_screen(p) - transform_.principal_point();
     return {bounded(screen.x), bounded(screen.y), transform_.perspective() ? 1.0 / p.z : base_ - p.z};
 }
 
+ScreenPoint ScreenMesh::rounded(const glm::dvec3& place, float scalar) const {
+    const double nearness = transform_.perspective() ? place.z - base_ : place.z;
+    return {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(nearness), scalar};
+}
+
 ScreenPoint ScreenMesh::on_screen(const EyeVertex& vertex) const {
-    const glm::dvec3& p = vertex.position;
     const auto scalar = static_cast<float>(vertex.scalar);
-    if (!has_place(p)) return {0.0F, 0.0F, behind_near_plane, scalar};
-    const glm::dvec2 screen = transform_.to_screen(p) - transform_.principal_point();
-    const double nearness = transform_.perspective() ? 1.0 / p.z - base_ : base_ - p.z;
-    return {screen_coordinate(screen.x), screen_coordinate(screen.y), static_cast<float>(nearness), scalar};
+    if (!has_place(vertex.position)) return {0.0F, 0.0F, behind_near_plane, scalar};
+    return rounded(precisely_on_screen(vertex.position), scalar);
 }
 
 ScreenMesh::Corners ScreenMesh::eye_corners(CellId cell) const {
@@ -220,6 +224,28 @@ std::size_t ScreenMesh::add_front_part(const Corners& corners, CellId cell) {
     const ClippedTet parts = clip_near(corners, near_depth_);
     for (std::size_t i = 0; i < parts.count; ++i) add_extra(parts.tets[i], cell);
     return parts.count;
+}
+
+std::span<const std::uint32_t> ScreenMesh::nearly_sorted(std::span<const CellId> cells) {
+    constexpr std::size_t steps = 1024;
+    const auto nearness = [&](CellId cell) { return points_[cells_.tets[cell][0]].nearness; };
+    float farthest = behind_near_plane, nearest = -behind_near_plane;
+    for (const CellId cell : cells) {
+        const float n = nearness(cell);
+        if (n == behind_near_plane) continue;
+        farthest = std::min(farthest, n);
+        nearest = std::max(nearest, n);
+    }
+    const float per_step = nearest > farthest ? static_cast<float>(steps - 1) / (nearest - farthest) : 0.0F;
+    const auto step = [&](CellId cell) {
+        return static_cast<std::size_t>(std::clamp((nearness(cell) - farthest) * per_step, 0.0F, static_cast<float>(steps - 1)));
+    };
+    std::array<std::uint32_t, steps + 1> next{};
+    for (const CellId cell : cells) ++next[step(cell) + 1];
+    for (std::size_t i = 0; i < steps; ++i) next[i + 1] += next[i];
+    sorted_.resize(cells.size());
+    for (const CellId cell : cells) sorted_[next[step(cell)]++] = cell;
+    return sorted_;
 }
 
 std::span<const std::uint32_t> ScreenMesh::cut(const ViewOrder& order) {

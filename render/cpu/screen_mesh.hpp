@@ -35,6 +35,9 @@ public:
 
     // All points as a camera sees them. set_scene came before.
     void set_view(const Camera& camera, ImageSize size);
+    // These cells nearly back to front: by the depth of one corner each, in a thousand steps. Valid until the next call. set_view came before.
+    std::span<const std::uint32_t> nearly_sorted(std::span<const CellId> cells);
+
     // The order with split cells as extra tetrahedra and cells cut at the near plane. The span stays valid until the next call,
     // and no longer than `order` does. set_view came before.
     std::span<const std::uint32_t> cut(const ViewOrder& order);
@@ -49,6 +52,7 @@ private:
 
     ScreenPoint on_screen(const EyeVertex& vertex) const;
     glm::dvec3 precisely_on_screen(const glm::dvec3& position) const;
+    ScreenPoint rounded(const glm::dvec3& place, float scalar) const;
     bool has_place(const glm::dvec3& position) const;
     void add_surfaces_of_extra(const Corners& corners, CellId cell);
     Corners eye_corners(CellId cell) const;
@@ -67,6 +71,7 @@ private:
     std::vector<std::array<VertexId, 4>> extra_;
     std::vector<CellId> extra_cells_;
     std::vector<std::uint32_t> items_;   // the order, where it is not the sorter's own
+    std::vector<std::uint32_t> sorted_;  // nearly
     // For scenes with isosurfaces, as ScreenSurfaces says.
     ScreenSurfaces surfaces_;
     std::vector<glm::dvec3> precise_points_;

@@ -46,7 +46,7 @@ HWY_INLINE Precision precision_of(const ScreenCells& cells, const CellPlanes& pl
 template <bool perspective>
 HWY_INLINE float margin_of(const CellPlanes& planes, std::size_t k, Precision precision) {
     if (precision == Precision::float32) return 0.0F;
-    if (precision == Precision::float64_alone) return 1e38F;
+    if (precision == Precision::float64_alone || is_flat(planes, k)) return 1e38F;
     return 1e-3F * (planes.nearest[k] - planes.farthest[k]) + 1e-6F * (perspective ? planes.base[k] : 1.0F);
 }
 
@@ -333,6 +333,29 @@ HWY_INLINE void keep_nearest(const ScreenSurfaces& surfaces, const TileState& ti
     nearest.gradient[pixel] = ends.gradient_front + at * (ends.gradient_back - ends.gradient_front);
 }
 
+// Whether every pixel of the cell's box has a surface in front of it.
+HWY_INLINE bool is_hidden(const CellPlanes& planes, std::size_t k, const NearestHits& nearest) {
+    const float front = planes.base[k] + planes.nearest[k];
+    for (int y = 0; y < planes.height[k]; ++y) {
+        const float* row = nearest.nearness + tile_side * (planes.top[k] + y) + planes.left[k];
+        for (int x = 0; x < planes.width[k]; ++x)
+            if (row[x] <= front) return false;
+    }
+    return true;
+}
+
+// Fragments that begin behind what their pixel holds, beyond the rounding of float32.
+HWY_INLINE void leave_hidden_out(Fragments& f, const NearestHits& nearest) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < f.count; ++i) {
+        const float hit = nearest.nearness[f.pixel[i]];
+        f.pixel[kept] = f.pixel[i];
+        kept += f.near_front[i] + 1e-5F * (1.0F + std::abs(f.near_front[i])) >= hit;
+    }
+    f.count = kept;
+}
+
+// Items come back to front, by and large: taken from the last one on, most of them are hidden.
 template <bool perspective>
 HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target, std::span<const std::uint32_t> items, TileState& tile) {
     const hn::CappedTag<float, CellPlanes::columns> d;
@@ -344,17 +367,25 @@ HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target
         nearest.surface[p] = -1;
     }
     std::size_t fragments = 0;
-    const auto keep = [&] {
-        fragments += tile.fragments.count;
-        for (std::size_t i = 0; i < tile.fragments.count; ++i) keep_nearest<perspective>(*cells.surfaces, tile, i, nearest);
-        tile.fragments.clear();
-    };
-    for (std::size_t begin = 0; begin < items.size(); begin += lanes) {
-        const std::size_t count = HWY_MIN(lanes, items.size() - begin);
-        if (begin + count < items.size()) prefetch_points(cells, &items[begin + count], HWY_MIN(lanes, items.size() - begin - count));
-        add_group<perspective, false, false, true>(d, cells, &items[begin], count, target, tile, keep);
+    for (std::size_t left = items.size(); left > 0;) {
+        std::uint32_t group[CellPlanes::columns];
+        const std::size_t count = HWY_MIN(lanes, left);
+        for (std::size_t i = 0; i < count; ++i) group[i] = items[--left];
+        const std::size_t next = HWY_MIN(lanes, left);
+        prefetch_points(cells, items.data() + left - next, next);
+        make_planes<perspective, false>(d, cells, group, count, tile.x, tile.y, target.width, target.height, tile.corners, tile.planes);
+        for (std::size_t k = 0; k < count; ++k) {
+            if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0 || is_hidden(tile.planes, k, nearest)) continue;
+            const Precision precision = precision_of(cells, tile.planes, k, group[k], tile);
+            find_hits<true>(tile.planes, k, tile.hits, margin_of<perspective>(tile.planes, k, precision));
+            add_fragments<perspective, false, false, true>(d, cells.view, tile.planes, tile.hits, tile.fragments);
+            if (precision != Precision::float64_alone) leave_hidden_out(tile.fragments, nearest);
+            complete_fragments<perspective>(cells, group[k], precision, 0, tile);
+            fragments += tile.fragments.count;
+            for (std::size_t i = 0; i < tile.fragments.count; ++i) keep_nearest<perspective>(*cells.surfaces, tile, i, nearest);
+            tile.fragments.clear();
+        }
     }
-    keep();
 
     for (std::int32_t p = 0; p < tile_side * tile_side; ++p) {
         if (nearest.surface[p] < 0) continue;

@@ -179,6 +179,9 @@ HWY_INLINE void composite_all(D d, const ScreenCells& cells, const Shading& shad
     }
 }
 
+// To float32 all faces of the cell look the same way.
+HWY_INLINE bool is_flat(const CellPlanes& cell, std::size_t k) { return cell.front_faces[k] == 0 || cell.front_faces[k] == 15; }
+
 // The faces of a cell, by the bits of those that look towards the eye: these first.
 inline constexpr std::uint8_t faces_by_side[16][4]{{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 1, 3},
                                                    {1, 2, 0, 3}, {0, 1, 2, 3}, {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
@@ -345,15 +348,14 @@ HWY_INLINE void add_group(D d, const ScreenCells& cells, const std::uint32_t* gr
         if (tile.some_closed && !meets_open_pixel(tile, tile.planes, k)) continue;
         const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
         if (tile.hits.count + most > Hits::capacity) finish_hits();
-        const bool flat = tile.planes.front_faces[k] == 0 || tile.planes.front_faces[k] == 15;
         if constexpr (surfaces) {  // one by one: many are found again in float64
             const Precision precision = precision_of(cells, tile.planes, k, group[k], tile);
-            if (flat && precision == Precision::float32) continue;
-            find_hits<true>(tile.planes, k, tile.hits, flat ? 1e38F : margin_of<perspective>(tile.planes, k, precision));
+            if (precision == Precision::float32 && is_flat(tile.planes, k)) continue;
+            find_hits<true>(tile.planes, k, tile.hits, margin_of<perspective>(tile.planes, k, precision));
             const std::size_t hits = tile.hits.count;
             finish_hits();
             complete_fragments<perspective>(cells, group[k], precision, tile.fragments.count - hits, tile);
-        } else if (!flat) {
+        } else if (!is_flat(tile.planes, k)) {
             find_hits<false>(tile.planes, k, tile.hits);
         }
     }
