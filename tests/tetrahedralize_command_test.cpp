@@ -177,7 +177,7 @@ TEST(SurfaceMeshing, NothingToFillIsRefused) {
 }
 
 TEST(SurfaceMeshing, BrokenMesherIsAnError) {
-    const fs::path script = fs::path(testing::TempDir()) / "cellproj_surface_mesher.sh";
+    const fs::path script = testing_support::scratch_folder() / "mesher.sh";
     MesherOptions options;
     options.program = script;
     options.timeout_seconds = 0.5;
@@ -190,7 +190,6 @@ TEST(SurfaceMeshing, BrokenMesherIsAnError) {
         EXPECT_EQ(error.kind(), ErrorKind::mesher);
         EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
-    fs::remove(script);
 }
 
 TEST(SurfaceMeshing, MessagesSurviveTheExchange) {

@@ -13,6 +13,8 @@
 #include <iterator>
 #include <string>
 
+#include "tests/support/scratch_folder.hpp"
+
 namespace cellproj::testing_support {
 
 inline std::string bytes_of(const std::filesystem::path& file) {
@@ -24,11 +26,7 @@ inline std::string bytes_of(const std::filesystem::path& file) {
 class FolderTest : public testing::Test {
 protected:
     void SetUp() override {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::path(testing::TempDir()) /
-                  ("cellproj_" + std::string(test->test_suite_name()) + "_" + test->name());
-        std::filesystem::remove_all(folder_);
-        std::filesystem::create_directories(folder_);
+        folder_ = scratch_folder();
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
