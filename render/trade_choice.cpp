@@ -12,7 +12,6 @@ namespace cellproj {
 
 namespace {
 
-
 double difference(const glm::vec4& a, const glm::vec4& b) {
     double widest = 0;
     for (int k = 0; k < 4; ++k) {

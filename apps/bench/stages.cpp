@@ -68,9 +68,9 @@ void Table(benchmark::State& state) {
     }
 }
 
-void Update(benchmark::State& state) {  // another transfer function for a scene that is prepared
+void Update(benchmark::State& state, Backend backend) {  // another transfer function for a scene that is prepared
     Scene s = scene(static_cast<int>(state.range(0)));
-    const auto renderer = make_renderer(Backend::gl_osmesa);
+    const auto renderer = make_renderer(backend);
     const Quality quality{.method = parse_method("integral")};
     renderer->prepare(s, quality);
     for (auto _ : state) {
@@ -134,7 +134,8 @@ void FrameByNodes(benchmark::State& state) {
 BENCHMARK(Adjacency)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Prepare)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Table)->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(Update)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(Update, cpu, Backend::cpu)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(Update, gl, Backend::gl_osmesa)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Sort)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Project)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(FrameByNodes)->Arg(2)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime();
