@@ -30,7 +30,8 @@ using testing_support::max_difference;
 using testing_support::point_field;
 using testing_support::view_of_unit_cube;
 
-constexpr ImageSize small{64, 64};
+constexpr int side = CELLPROJ_SANITIZED ? 32 : 64;
+constexpr ImageSize small{side, side};
 constexpr std::array projections{Camera::Projection::parallel, Camera::Projection::perspective};
 
 Renderer& renderer() {

@@ -303,7 +303,7 @@ TEST(VertexLight, TheErrorFallsWithTheCellsAndIsLargeOnPeaks) {
                                          Row{"average:vertices:half", {{{0.1331, 0.787}, {0.0394, 0.583}, {0.0179, 0.200}}}},
                                          Row{"homogeneous:vertices", {{{0.0694, 0.787}, {0.0291, 0.595}, {0.0134, 0.221}}}},
                                          Row{"linear:8:vertices", {{{0.0694, 0.362}, {0.0291, 0.234}, {0.0134, 0.115}}}}}) {
-        for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t i = 0; i < (CELLPROJ_SANITIZED ? 2 : 3); ++i) {
             const Errors found = errors_on_a_grid(6 << i, parse_method(name));
             EXPECT_NEAR(found.ramp, measured[i].ramp, slack(name) * measured[i].ramp) << name << " " << i;
             EXPECT_NEAR(found.peaks, measured[i].peaks, slack(name) * measured[i].peaks) << name << " " << i;

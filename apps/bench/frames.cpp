@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// cellproj_frames: every figure of performance in the README, and VTK's beside them.
+// cellproj_frames: whole frames of every backend, timed and judged, and VTK's beside them: the times of frames in the README.
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
