@@ -36,7 +36,8 @@ TEST(Trade, TheFrontIsWhatNothingBeats) {
 }
 
 TEST(Trade, TheLargestErrorCountsOpacityToo) {
-    ImageError error{.pixels = 1, .color = {0, 0, 1e-4}};
+    ImageError error;
+    error.color.maximum = 1e-4;
     EXPECT_EQ(largest(error), 1e-4);
     error.opacity.maximum = 0.5;
     EXPECT_EQ(largest(error), 0.5);

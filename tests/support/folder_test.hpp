@@ -45,19 +45,22 @@ struct Outcome {
     std::string text;  // standard output and error together
 };
 
-// Runs cellproj with these arguments in `folder`, behind settings of the environment: "NAME=value".
-inline Outcome run_program(const std::filesystem::path& folder, const std::string& arguments,
-                           const std::string& environment = "") {
-    const std::string command =
-        "cd '" + folder.string() + "' && " + environment + " '" + CELLPROJ_PROGRAM + "' " + arguments + " 2>&1";
+// Runs a line of the shell in `folder`.
+inline Outcome run_command(const std::filesystem::path& folder, const std::string& command) {
     Outcome outcome;
-    FILE* pipe = popen(command.c_str(), "r");
+    FILE* pipe = popen(("cd '" + folder.string() + "' && " + command + " 2>&1").c_str(), "r");
     std::array<char, 4096> buffer{};
     for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
         outcome.text.append(buffer.data(), n);
     const int status = pclose(pipe);
     outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return outcome;
+}
+
+// Runs cellproj with these arguments in `folder`, behind settings of the environment: "NAME=value".
+inline Outcome run_program(const std::filesystem::path& folder, const std::string& arguments,
+                           const std::string& environment = "") {
+    return run_command(folder, environment + " '" + CELLPROJ_PROGRAM + "' " + arguments);
 }
 
 }  // namespace cellproj::testing_support
