@@ -16,8 +16,8 @@ namespace cellproj::cpu {
 // only are left out, and when all tiles are full there is no further slab.
 //
 // A slab holds at most `budget` entries of 4 bytes, or what a single chunk of 16,384 items needs where that is more (at most 64 MB,
-// when every one of them covers all tiles of a region). Besides 4 bytes per item (its box) and 8 KB per chunk (counts and places).
-// Memory is kept from view to view. The same lists for any number of threads.
+// when every one of them covers all tiles of a region). Besides 4 bytes per item and 4 KB per chunk. Memory is kept from view to
+// view. The same lists for any number of threads.
 class TileBins {
 public:
     explicit TileBins(std::size_t budget = std::size_t{1} << 24) : budget_(budget) {}
