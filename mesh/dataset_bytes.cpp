@@ -42,14 +42,14 @@ std::optional<T> take_optional(ByteReader& reader, const char* what) {
     return numbers.empty() ? std::nullopt : std::optional<T>(numbers.front());
 }
 
-void put_boxes(ByteWriter& writer, const std::optional<BoxGrid>& boxes) {
+void put_boxes(ByteWriter& writer, std::optional<BoxGrid>& boxes) {
     writer.value(boxes.has_value());
     if (!boxes) return;
     for (const GridAxis& axis : boxes->axes) {
         writer.array(axis.coordinates);
         put_optional(writer, axis.spacing);
     }
-    writer.array(boxes->blanked);
+    put_and_free(writer, boxes->blanked);
 }
 
 std::optional<BoxGrid> take_boxes(ByteReader& reader) {

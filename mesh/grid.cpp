@@ -6,18 +6,13 @@
 #include <limits>
 #include <utility>
 
-#include "mesh/error.hpp"
+#include "mesh/grid_error.hpp"
 
 namespace cellproj {
 
 namespace {
 
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
-
-[[noreturn]] void fail(const std::string& place, const std::string& expected, const std::string& found,
-                       const std::string& advice) {
-    throw Error({.kind = ErrorKind::data, .place = place, .expected = expected, .found = found, .advice = advice});
-}
 
 template <class Visit>
 void for_each_cell(const GridDimensions& n, Visit visit) {
@@ -52,7 +47,7 @@ std::vector<bool> kept_points(const GridDimensions& n, const std::vector<std::ui
 std::vector<double> spread(const std::vector<double>& values, const std::vector<bool>& kept, const std::string& place) {
     const auto count = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true));
     if (values.size() != count) {
-        fail(place, std::to_string(count) + " values", std::to_string(values.size()), "give every element one value");
+        refuse_grid(place, std::to_string(count) + " values", std::to_string(values.size()), "give every element one value");
     }
     if (count == kept.size()) return values;
     std::vector<double> all(kept.size(), std::numeric_limits<double>::quiet_NaN());
@@ -116,7 +111,7 @@ void blank_cells_without_value(Grid& grid) {
 
 void require_one_grid(const Dataset& dataset) {
     if (dataset.boxes) return;
-    fail(dataset.source, "one grid of boxes along x, y and z",
+    refuse_grid(dataset.source, "one grid of boxes along x, y and z",
          dataset.grid ? "a curvilinear grid, or an image turned against the axes"
                       : "an unstructured mesh, or several blocks (" + dataset.format + ")",
          "draw it as tetrahedra, or resample it");
@@ -195,7 +190,7 @@ Grid make_grid(const Dataset& dataset, const ScalarField& field) {
     make_ascending(grid, descends);
     blank_cells_without_value(grid);
     if (!grid.blanked.empty() && std::count(grid.blanked.begin(), grid.blanked.end(), 0) == 0) {
-        fail(place, "a cell with finite values", "none", "choose another field");
+        refuse_grid(place, "a cell with finite values", "none", "choose another field");
     }
     return grid;
 }
@@ -204,21 +199,21 @@ void validate(const Grid& grid, const std::string& place) {
     for (std::size_t a = 0; a < 3; ++a) {
         const std::string axis = place + ", axis " + axis_names[a];
         if (require_monotonic(grid.axes[a], axis) > 0) continue;
-        fail(axis, "coordinates that ascend", "coordinates that descend", "turn the axis and its values round");
+        refuse_grid(axis, "coordinates that ascend", "coordinates that descend", "turn the axis and its values round");
     }
     const GridDimensions n = grid.dimensions();
     const std::size_t rows = grid.location == FieldLocation::points ? n.ni * n.nj * n.nk : n.cells();
     if (grid.values.size() != rows) {
-        fail(place, std::to_string(rows) + " values", std::to_string(grid.values.size()),
+        refuse_grid(place, std::to_string(rows) + " values", std::to_string(grid.values.size()),
              "give every element one value");
     }
     if (!grid.blanked.empty() && grid.blanked.size() != n.cells()) {
-        fail(place, "a mark for each of " + std::to_string(n.cells()) + " cells, or none",
+        refuse_grid(place, "a mark for each of " + std::to_string(n.cells()) + " cells, or none",
              std::to_string(grid.blanked.size()), "give every cell one mark");
     }
     for_each_cell(n, [&](const GridCell& c) {
         if (grid.is_blanked(c) || is_finite_at(grid, c)) return;
-        fail(place + ", cell " + std::to_string(grid.cell_id(c)), "finite values", "NaN or infinity", "blank the cell");
+        refuse_grid(place + ", cell " + std::to_string(grid.cell_id(c)), "finite values", "NaN or infinity", "blank the cell");
     });
 }
 

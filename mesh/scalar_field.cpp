@@ -176,7 +176,7 @@ std::optional<std::string> field_to_look_at(const TetMesh& mesh, std::size_t add
     return whole;
 }
 
-ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const std::string& place) {
+ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const std::string& place, std::size_t added_points) {
     const std::vector<FoundField> all = all_fields(mesh);
     if (auto coordinate = coordinate_by_name(mesh, all, name, place)) return *std::move(coordinate);
     if (all.empty()) {
@@ -187,7 +187,7 @@ ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const st
                      .advice = "write the file with the quantity that is to be drawn, or draw a coordinate: --field Points:z"});
     }
     if (!name.empty()) return scalar_by_name(all, name, place);
-    if (const auto best = field_to_look_at(mesh)) return scalar_by_name(all, *best, place);
+    if (const auto best = field_to_look_at(mesh, added_points)) return scalar_by_name(all, *best, place);
     const auto [field, location] = default_field(all);
     return as_scalar(*field, location);
 }

@@ -29,9 +29,11 @@ struct ScalarField {
 // squares), or one component of it by "name:x", "name:y", "name:z" or "name:0", "name:1", … Names that hold a colon
 // themselves are found first. Without an exact match, a match that differs in upper and lower case only is taken if it
 // is the only one. "Points:x", "Points:y", "Points:z" are the coordinates where no field is called so. An empty name chooses
-// `field_to_look_at`, without one the first scalar on points, on cells, then the first field of all. Throws Error (option) when there is no such field (the message lists those that exist) or no such
-// component, Error (data) when there is no field at all. `place` names the file in messages.
-ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const std::string& place);
+// `field_to_look_at` (which says what `added_points` are), without one the first scalar on points, on cells, then the first
+// field of all. Throws Error (option) when there is no such field (the message lists those that exist) or no such component,
+// Error (data) when there is no field at all. `place` names the file in messages.
+ScalarField select_scalar(const TetMesh& mesh, const std::string& name, const std::string& place,
+                          std::size_t added_points = 0);
 
 // The name of the field that somebody is likely to look for first: a scalar that varies and is not made of whole numbers only
 // (these count or mark: ids, materials, ghosts), else a vector or tensor whose magnitude varies, else whatever varies; points

@@ -37,8 +37,7 @@ public:
 
     // Nothing farther can be seen: the transmittance is 0 in float64.
     bool opaque() const { return depth_ > 746.0; }
-    double depth() const { return depth_; }  // optical depth so far
-    Light light() const;                     // associated
+    Light light() const;  // associated
 
 private:
     // A part of a segment, with a parameter of its own from 0 to 1, on which the scalar is monotonic and stays in one

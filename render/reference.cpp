@@ -263,4 +263,6 @@ ImageError compare(const Image& image, std::span<const PixelTruth> truths) {
     return {truths.size(), color.measure(), opacity.measure()};
 }
 
+double largest(const ImageError& error) { return std::max(error.color.maximum, error.opacity.maximum); }
+
 }  // namespace cellproj

@@ -49,6 +49,9 @@ struct PixelTruth {
     Light low, high;  // channel by channel
 };
 
+// The slack of Reference::pixels for pictures whose vertices were put on a rasterizer's grid of 1/256 of a pixel [pixels].
+constexpr double rasterizer_slack = 1.0 / 512;
+
 // Keeps the index over a scene's mesh for any number of pictures. Immutable: any number of threads may ask at once.
 class Reference {
 public:
@@ -122,5 +125,8 @@ struct ImageError {
 // The picture against the truth, at the truth's pixels. A value that is not finite is an infinite error. Throws Error
 // (option) when a pixel lies outside the picture. No pixels: all 0.
 ImageError compare(const Image& image, std::span<const PixelTruth> truths);
+
+// The largest error of any channel, opacity included.
+double largest(const ImageError& error);
 
 }  // namespace cellproj

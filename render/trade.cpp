@@ -104,18 +104,6 @@ void mark_front(std::span<TradeRow> rows) {
     }
 }
 
-double largest(const ImageError& error) {
-    return std::max(error.color.maximum, error.opacity.maximum);
-}
-
-const TradeRow* fastest_within(std::span<const TradeRow> rows, double max_error) {
-    const TradeRow* best = nullptr;
-    for (const TradeRow& row : rows) {
-        if (largest(row.error) <= max_error && (!best || row.frame_ms < best->frame_ms)) best = &row;
-    }
-    return best;
-}
-
 Image error_map(const Image& image, std::span<const PixelTruth> truths) {
     Image map(image.width, image.height);
     for (const PixelTruth& truth : truths) {

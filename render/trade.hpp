@@ -58,12 +58,6 @@ std::vector<FrameTimes> time_frames(Renderer& renderer, const Scene& scene, cons
 // Sets on_front of all rows.
 void mark_front(std::span<TradeRow> rows);
 
-// The largest error of any channel, opacity included.
-double largest(const ImageError& error);
-
-// The row with the shortest frame whose `largest` error is at most `max_error`; none if there is no such row.
-const TradeRow* fastest_within(std::span<const TradeRow> rows, double max_error);
-
 // How far the colours of a picture are from the truth, pixel by pixel: red as the largest error of a channel grows from
 // 1e-5 to 1e-1 (logarithmic, dark blue to yellow), transparent where there is no truth.
 Image error_map(const Image& image, std::span<const PixelTruth> truths);

@@ -12,8 +12,6 @@ namespace cellproj {
 
 namespace {
 
-constexpr double slack = 1.0 / 512;  // what the rasterizer's grid may do (Reference::pixels)
-
 double difference(const glm::vec4& a, const glm::vec4& b) {
     double widest = 0;
     for (int k = 0; k < 4; ++k) {
@@ -71,7 +69,7 @@ QualityChoice choose_quality(Renderer& renderer, const Scene& scene, const Camer
     assert(max_error > 0);
     const Reference reference(scene);
     const std::vector<PixelTruth> even =
-        reference.pixels(camera, size, reference.sample(camera, size, options.sample), slack);
+        reference.pixels(camera, size, reference.sample(camera, size, options.sample), rasterizer_slack);
 
     QualityChoice choice;
     choice.sample = choice.judged = even.size();
@@ -92,7 +90,7 @@ QualityChoice choose_quality(Renderer& renderer, const Scene& scene, const Camer
     const auto by_row = [](PixelId a, PixelId b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); };
     std::sort(suspects.begin(), suspects.end(), by_row);
     suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
-    const std::vector<PixelTruth> suspected = reference.pixels(camera, size, suspects, slack);
+    const std::vector<PixelTruth> suspected = reference.pixels(camera, size, suspects, rasterizer_slack);
     choice.judged += suspected.size();
     // All are judged by the suspects of each: where two differ, either may be wrong. Drawn once more, as one picture for each of
     // them at once is much memory where pictures are large.

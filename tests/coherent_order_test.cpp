@@ -17,19 +17,15 @@
 
 #include "sort/visibility_sorter.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/orders.hpp"
 
 namespace cellproj {
 namespace {
 
 using testing_support::delaunay_mesh;
+using testing_support::expect_each_once;
 using testing_support::grid_mesh;
-using testing_support::relabelled;
-
-TetMesh shuffled(TetMesh mesh, std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::shuffle(mesh.tets.begin(), mesh.tets.end(), random);
-    return relabelled(mesh, random);
-}
+using testing_support::shuffled;
 
 // A point on a tilted orbit around the unit cube, or the direction to it.
 Eye on_orbit(double degrees, bool at_infinity) {
@@ -41,13 +37,6 @@ Eye on_orbit(double degrees, bool at_infinity) {
 // In and out of the cube, through points, edges and planes of the regular grid.
 Eye on_path_through(double t) {
     return Eye::at({-0.2 + 1.4 * t, 0.5 + 0.3 * std::sin(9 * t), t < 0.5 ? 0.5 : 0.5 + 0.25 * (t - 0.5)});
-}
-
-void expect_each_once(std::span<const CellId> cells, std::size_t count) {
-    std::vector<CellId> sorted(cells.begin(), cells.end());
-    std::sort(sorted.begin(), sorted.end());
-    ASSERT_EQ(sorted.size(), count);
-    for (CellId i = 0; i < count; ++i) ASSERT_EQ(sorted[i], i);
 }
 
 template <class EyeAt>

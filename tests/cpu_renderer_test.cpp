@@ -20,6 +20,7 @@
 #include "render/cpu/kernels.hpp"
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -31,6 +32,7 @@ using testing_support::constant_medium;
 using testing_support::delaunay_mesh;
 using testing_support::grid_mesh;
 using testing_support::linear;
+using testing_support::max_difference;
 using testing_support::point_field;
 using testing_support::ramp;
 using testing_support::scene_of;
@@ -50,25 +52,12 @@ Renderer& cpu() {
 // Six coloured peaks of half width .01: most cells hold a node, many hold several.
 TransferFunction peaks(double extinction = 20.0) { return scenes::peaks(0, 1, 20 / extinction); }
 
-double max_difference(const Image& a, const Image& b) {
-    EXPECT_EQ(a.pixels.size(), b.pixels.size());
-    double largest = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i)
-        for (int k = 0; k < 4; ++k) {
-            const double difference = std::abs(static_cast<double>(a.pixels[i][k]) - b.pixels[i][k]);
-            if (!(difference <= largest)) largest = difference;  // NaN counts as a difference
-        }
-    return largest;
-}
-
 // The worst channel over a sample of the picture.
 ImageError error_of(const Scene& scene, const Reference& judge, const Camera& camera, ImageSize size, const Quality& quality,
                     std::size_t pixels) {
     const Image image = cpu().render(scene, camera, size, quality);
     return compare(image, judge.pixels(camera, size, judge.sample(camera, size, pixels)));
 }
-
-double worst(const ImageError& error) { return std::max(error.color.maximum, error.opacity.maximum); }
 
 TEST(CpuRenderer, AConstantMediumFollowsItsClosedForm) {
     const double extinction = 1.7;
@@ -143,9 +132,9 @@ TEST_F(AgainstTheJudge, RampPeaksAndExactStayWithinTheirBars) {
         const Reference judge(s, index(s));
         for (const Camera& camera : {view_of_unit_cube(Projection::parallel), view_of_unit_cube(Projection::perspective), inside()}) {
             const ImageError error = error_of(s, judge, camera, size(), {.method = parse_method(bar.method)}, samples());
-            std::printf("%s: RMS %.1e, max %.1e\n", bar.method, error.color.rms, worst(error));
+            std::printf("%s: RMS %.1e, max %.1e\n", bar.method, error.color.rms, largest(error));
             EXPECT_LT(error.color.rms, bar.rms) << bar.method;
-            EXPECT_LT(worst(error), bar.largest) << bar.method;
+            EXPECT_LT(largest(error), bar.largest) << bar.method;
         }
     }
 }
@@ -184,9 +173,9 @@ TEST(CpuRendererOrder, PixelsThatSortThemselvesAreRightOnAnyMesh) {
             const Image image = cpu().render(scene, camera, {128, 128}, {.order_per_pixel = true}, &statistics);
             EXPECT_EQ(statistics.order, "pixel");
             // With a slack of 1/512 pixel for silhouettes, where a chord may jump. `integral` errs by up to 2e-4 a segment.
-            const ImageError error = compare(image, judge.picture(camera, {128, 128}, 1.0 / 512));
+            const ImageError error = compare(image, judge.picture(camera, {128, 128}, rasterizer_slack));
             EXPECT_GT(error.pixels, 100U);
-            EXPECT_LT(worst(error), 1e-3);
+            EXPECT_LT(largest(error), 1e-3);
         }
     }
 }
@@ -456,7 +445,7 @@ TEST(CpuRenderer, ThousandsOfNodesAndBlocksOfPieces) {
     const Reference judge(scene);
     const Camera camera = view_of_unit_cube(Projection::perspective);
     const ImageError error = error_of(scene, judge, camera, small, {}, 500);
-    EXPECT_LT(worst(error), 2e-3);  // classify/README.md: 5e-4 a segment
+    EXPECT_LT(largest(error), 2e-3);  // classify/README.md: 5e-4 a segment
 }
 
 TEST(CpuRenderer, PicturesLargerThanARegionHaveNoSeams) {
@@ -467,7 +456,7 @@ TEST(CpuRenderer, PicturesLargerThanARegionHaveNoSeams) {
     const Image image = cpu().render(scene, camera, large, {}, &statistics);
     EXPECT_EQ(statistics.counts.drawn, scene.mesh->tets.size());  // each counted once
     const Reference judge(scene);
-    EXPECT_LT(worst(compare(image, judge.pixels(camera, large, judge.sample(camera, large, 1000)))), 2e-5);
+    EXPECT_LT(largest(compare(image, judge.pixels(camera, large, judge.sample(camera, large, 1000)))), 2e-5);
 }
 
 // A tenth of a degree: the corners of the cells lie 100,000 pixels away.
@@ -478,7 +467,7 @@ TEST(CpuRenderer, AStrongZoomKeepsItsDigits) {
     camera.fov_y_degrees = 0.1;
     const ImageError error = error_of(scene, judge, camera, small, {}, 300);
     EXPECT_GT(error.pixels, 200U);
-    EXPECT_LT(worst(error), 2e-5);  // positions are rounded to 1e-7 of the mesh
+    EXPECT_LT(largest(error), 2e-5);  // positions are rounded to 1e-7 of the mesh
 }
 
 TEST(CpuRenderer, OpaqueScenesStopEarly) {

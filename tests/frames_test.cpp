@@ -3,9 +3,6 @@
 // cellproj_frames on a tiny scene: what it writes can be read, and what fails is told in its row.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
@@ -31,20 +28,12 @@ std::vector<std::string> split(const std::string& line) {  // at commas outside 
 
 class Frames : public testing_support::FolderTest {
 protected:
-    // The exit code of cellproj_frames with these arguments; its words are in words.txt.
-    int run(const std::string& arguments) const {
-        const std::string command =
-            "cd '" + folder_.string() + "' && '" + CELLPROJ_FRAMES "' " + arguments + " > words.txt 2>&1";
-        const int status = std::system(command.c_str());
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    }
-    std::string text(const std::string& name) const {
-        std::stringstream stream;
-        stream << std::ifstream(folder_ / name).rdbuf();
-        return stream.str();
+    // cellproj_frames with these arguments.
+    testing_support::Outcome run(const std::string& arguments) const {
+        return testing_support::run_command(folder_, "'" CELLPROJ_FRAMES "' " + arguments);
     }
     std::vector<Row> rows(const std::string& csv) const {
-        std::istringstream lines(text(csv));
+        std::istringstream lines(content(csv));
         std::string line;
         std::getline(lines, line);
         const auto names = split(line);
@@ -60,10 +49,9 @@ protected:
 };
 
 TEST_F(Frames, WriteATableThatCanBeRead) {
-    ASSERT_EQ(run("--scenes grid:5 --transfers ramp --sizes 48 --frames 3 --judge 300 --projections perspective,parallel "
-                  "--contenders cpu,gl --csv frames.csv --markdown frames.md"),
-              0)
-        << text("words.txt");
+    const auto outcome = run("--scenes grid:5 --transfers ramp --sizes 48 --frames 3 --judge 300 --projections perspective,parallel "
+                             "--contenders cpu,gl --csv frames.csv --markdown frames.md");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
     const auto table = rows("frames.csv");
     ASSERT_EQ(table.size(), 4U);
     for (const Row& row : table) {
@@ -82,14 +70,15 @@ TEST_F(Frames, WriteATableThatCanBeRead) {
     }
     EXPECT_GT(std::stod(table[0].at("pixels_per_tet")), 1);
     EXPECT_EQ(table[0].at("contender"), "cpu");
-    EXPECT_NE(text("frames.md").find("| grid:5 | 384 | ramp | parallel | 48 | gl |"), std::string::npos) << text("frames.md");
+    EXPECT_NE(content("frames.md").find("| grid:5 | 384 | ramp | parallel | 48 | gl |"), std::string::npos) << content("frames.md");
 }
 
 TEST_F(Frames, TellWhatFailsInItsRow) {
     // The CPU backend has no light at vertices.
-    EXPECT_EQ(run("--scenes grid:3 --transfers ramp --sizes 16 --frames 1 --judge 50 --contenders cpu,gl --method shirley-tuchman --csv f.csv"), 1);
+    const auto outcome = run("--scenes grid:3 --transfers ramp --sizes 16 --frames 1 --judge 50 --contenders cpu,gl --method shirley-tuchman --csv f.csv");
+    EXPECT_EQ(outcome.code, 1);
     const auto table = rows("f.csv");
-    ASSERT_EQ(table.size(), 2U) << text("words.txt");
+    ASSERT_EQ(table.size(), 2U) << outcome.text;
     EXPECT_NE(table[0].at("failure"), "");
     EXPECT_EQ(table[0].at("frame_ms"), "");
     EXPECT_EQ(table[1].at("failure"), "");
@@ -97,9 +86,10 @@ TEST_F(Frames, TellWhatFailsInItsRow) {
 }
 
 TEST_F(Frames, RefuseWhatTheyDoNotKnow) {
-    EXPECT_EQ(run("--contenders abacus"), 2);
-    EXPECT_EQ(run("--scenes grid:1"), 1);
-    EXPECT_NE(text("words.txt").find("from 2 to 500"), std::string::npos) << text("words.txt");
+    EXPECT_EQ(run("--contenders abacus").code, 2);
+    const auto refused = run("--scenes grid:1");
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_NE(refused.text.find("from 2 to 500"), std::string::npos) << refused.text;
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 // ordered from the real program.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
@@ -23,6 +22,7 @@
 #include "mesh/mesher_format.hpp"
 #include "tests/mesher_fixtures.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace cellproj {
 namespace {
@@ -34,11 +34,7 @@ using testing_support::unit_tet;
 
 class MesherFailure : public testing::Test {
 protected:
-    void SetUp() override {
-        const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-        folder_ = fs::path(testing::TempDir()) / ("cellproj_mesher_" + name + "_" + std::to_string(getpid()));
-        fs::create_directories(folder_);
-    }
+    void SetUp() override { folder_ = testing_support::scratch_folder(); }
 
     void TearDown() override {
         EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "a child process was left behind";

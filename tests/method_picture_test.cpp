@@ -7,16 +7,19 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <optional>
 
 #include "classify/segment_method.hpp"
 #include "render/prepared_scene.hpp"
 #include "render/renderer.hpp"
-#include "tests/support/meshes.hpp"
+#include "tests/support/differences.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace cellproj {
 namespace {
+
+using testing_support::Chord;
+using testing_support::chord_in_first_cell;
+using testing_support::error_but_for_snapping;
 
 constexpr ImageSize size{64, 64};
 
@@ -61,19 +64,6 @@ Camera view(Camera::Projection projection = Camera::Projection::perspective) {
     return frame_bounds({glm::dvec3(0), glm::dvec3(1)}, projection, {0.9, -1.3, 0.5}, {0, 0, 1}, 1.0);
 }
 
-// Lengths along the ray where it enters and leaves the cell.
-std::optional<std::pair<double, double>> chord(const TetMesh& mesh, const ScreenTransform::Ray& ray) {
-    double enter = -1e300, leave = 1e300;
-    for (int face = 0; face < 4; ++face) {
-        const auto v = face_vertices(mesh.tets[0], face);
-        const glm::dvec3 a = mesh.points[v[0]], outward = glm::cross(mesh.points[v[1]] - a, mesh.points[v[2]] - a);
-        const double speed = glm::dot(outward, ray.direction), t = glm::dot(outward, a - ray.origin) / speed;
-        if (speed > 0) leave = std::min(leave, t);
-        if (speed < 0) enter = std::max(enter, t);
-    }
-    return leave > enter ? std::optional(std::pair(enter, leave)) : std::nullopt;
-}
-
 // The light of the float64 model along the ray through a place on the screen.
 class Model {
 public:
@@ -87,14 +77,14 @@ public:
 
     glm::dvec4 at(const glm::dvec2& screen) const {
         const auto ray = transform_.ray(screen);
-        const auto ends = chord(*scene_.mesh, ray);
-        if (!ends) return glm::dvec4(0.0);
+        const Chord chord = chord_in_first_cell(*scene_.mesh, ray, false);
+        if (chord.length() == 0) return glm::dvec4(0.0);
         const auto scalar = [&](double t) {
             const glm::dvec3 p = ray.origin + t * ray.direction;
             return prepared_.units().normalized(0.1 + p.x - 0.3 * p.y + 0.6 * p.z);
         };
-        const double length = (ends->second - ends->first) * glm::length(ray.direction) / prepared_.units().length;
-        const Light light = method_->light(scalar(ends->first), scalar(ends->second), length);
+        const double length = chord.length() * glm::length(ray.direction) / prepared_.units().length;
+        const Light light = method_->light(scalar(chord.enter), scalar(chord.leave), length);
         return {light.color, light.opacity};
     }
 
@@ -104,28 +94,6 @@ private:
     ScreenTransform transform_;
     std::unique_ptr<SegmentMethod> method_;
 };
-
-// How far a pixel lies outside of what the model gives within 1/512 of a pixel around its centre, the rasterizer's
-// grid.
-double largest_error(const Model& model, const Image& image) {
-    double largest = 0.0;
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            glm::dvec4 low(1e300), high(-1e300);
-            for (const glm::dvec2& offset :
-                 {glm::dvec2(0, 0), glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
-                const glm::dvec4 light = model.at(glm::dvec2(x + 0.5, y + 0.5) + offset / 512.0);
-                low = glm::min(low, light);
-                high = glm::max(high, light);
-            }
-            for (int k = 0; k < 4; ++k) {
-                const double value = image.at(x, y)[k];
-                const double outside = std::max(low[k] - value, value - high[k]);
-                if (!(outside <= largest)) largest = outside;  // NaN is an error
-            }
-        }
-    return largest;
-}
 
 bool is_8_bit(const std::string& method) {
     return method.find("uint8") != std::string::npos;
@@ -138,7 +106,8 @@ TEST(MethodPicture, FragmentsComputeWhatTheModelDoes) {
             for (const std::string& method : methods) {
                 const Scene scene = one_cell(ramp(optical_model));
                 const Image image = renderer->render(scene, view(projection), size, {.method = parse_method(method)});
-                const double error = largest_error(Model(method, scene, view(projection)), image);
+                const Model model(method, scene, view(projection));
+                const double error = error_but_for_snapping(image, [&](const glm::dvec2& at) { return model.at(at); });
                 // float32 terms and lookups: measured 8e-6. The driver (llvmpipe) filters 8-bit texels in 8 bits: one
                 // rounding to 1/255 of the range per axis, times the length where the texel is an extinction: 1e-2.
                 EXPECT_LT(error, is_8_bit(method) ? 2e-2 : 2e-5) << method;

@@ -18,35 +18,17 @@
 #include "sort/mesh_facts.hpp"
 #include "sort/visibility_sorter.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/orders.hpp"
 
 namespace cellproj {
 namespace {
 
 using testing_support::delaunay_mesh;
+using testing_support::expect_each_once;
 using testing_support::grid_mesh;
-using testing_support::relabelled;
+using testing_support::random_eye;
+using testing_support::shuffled;
 using testing_support::unit_tet;
-
-// Even ones at infinity, odd ones at a distance of .3 to 10 from the middle of the unit cube, many inside.
-Eye random_eye(std::mt19937_64& random, int i) {
-    std::normal_distribution<double> normal;
-    const glm::dvec3 direction = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-    const double distance = 0.3 * std::pow(33.0, std::uniform_real_distribution<double>()(random));
-    return i % 2 ? Eye::at(glm::dvec3(0.5) + distance * direction) : Eye::towards(direction);
-}
-
-void expect_each_once(std::span<const std::uint32_t> items, std::size_t cells) {
-    std::vector<std::uint32_t> sorted(items.begin(), items.end());
-    std::sort(sorted.begin(), sorted.end());
-    ASSERT_EQ(sorted.size(), cells);
-    for (std::uint32_t i = 0; i < cells; ++i) ASSERT_EQ(sorted[i], i);
-}
-
-TetMesh shuffled(TetMesh mesh, std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    std::shuffle(mesh.tets.begin(), mesh.tets.end(), random);
-    return relabelled(mesh, random);
-}
 
 // The grid without the cells of one octant: concave.
 TetMesh notched_grid(int n) {

@@ -11,6 +11,7 @@
 
 #include "classify/color_space.hpp"
 #include "classify/transfer_function.hpp"
+#include "tests/support/scratch_folder.hpp"
 #include "tests/support/transfer_errors.hpp"
 
 namespace cellproj {
@@ -169,14 +170,12 @@ TEST(ParaViewColorMap, OneOfSeveralIsChosenByName) {
     expect_words(error_of([&] { parse_transfer_function(R"({"color": []})", "tf.json", 1, "White"); }), ErrorKind::option,
                  {"#White"});
 
-    const auto folder = std::filesystem::path(testing::TempDir()) / "cellproj_color_maps";
-    std::filesystem::create_directories(folder);
+    const auto folder = testing_support::scratch_folder();
     std::ofstream(folder / "maps.json") << maps;
     EXPECT_EQ(read_transfer_function(folder / "maps.json#White").color(0).r, 1.0);
     expect_words(error_of([&] { read_transfer_function(folder / "none.json#White"); }), ErrorKind::file, {"none.json"});
     std::ofstream(folder / "maps.json#White") << R"({"color": [[0,0.5,0.5,0.5]], "extinction": [[0,1]]})";
     EXPECT_EQ(read_transfer_function(folder / "maps.json#White").color(0).r, 0.5);
-    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include "mesh/tetrahedralize.hpp"
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/layers.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
@@ -52,12 +53,6 @@ TransferFunction nothing() { return constant_medium(0); }
 
 Camera from_above() {
     return {.projection = Camera::Projection::parallel, .eye = {0.5, 0.5, 9}, .center = {0.5, 0.5, 0}, .up = {0, 1, 0}, .height = 1};
-}
-
-double distance(const Light& a, const Light& b) {
-    const glm::dvec3 color = glm::abs(a.color - b.color);
-    const double largest = std::max({color.x, color.y, color.z, std::abs(a.opacity - b.opacity)});
-    return std::isfinite(largest) ? largest : std::numeric_limits<double>::infinity();
 }
 
 // What a ray sees of the unit cube where the scalar is `linear`.

@@ -16,18 +16,13 @@
 
 #include "mesh/error.hpp"
 #include "mesh/read.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace cellproj {
 
 namespace fs = std::filesystem;
 
-inline fs::path scratch_folder() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    const fs::path folder = fs::path(testing::TempDir()) / "cellproj_read_test" /
-                            (std::string(test->test_suite_name()) + "." + test->name());
-    fs::create_directories(folder);
-    return folder;
-}
+using testing_support::scratch_folder;
 
 inline fs::path write(const std::string& name, const std::string& bytes) {
     const fs::path file = scratch_folder() / name;

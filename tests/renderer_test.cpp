@@ -17,6 +17,7 @@
 
 #include "classify/segment_integral.hpp"
 #include "mesh/error.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -26,10 +27,12 @@ namespace {
 using testing_support::delaunay_mesh;
 using testing_support::grid_mesh;
 using testing_support::point_field;
+using testing_support::chord_in_first_cell;
 using testing_support::chord_in_unit_cube;
 using testing_support::Chord;
 using testing_support::constant_medium;
 using testing_support::linear;
+using testing_support::max_difference;
 using testing_support::ramp;
 using testing_support::relabelled;
 using testing_support::scene_of;
@@ -43,47 +46,14 @@ Renderer& renderer() {
     return *shared;
 }
 
-double max_difference(const Image& a, const Image& b) {
-    EXPECT_EQ(a.pixels.size(), b.pixels.size());
-    double largest = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        for (int k = 0; k < 4; ++k) {
-            const double difference = std::abs(static_cast<double>(a.pixels[i][k]) - b.pixels[i][k]);
-            if (!(difference <= largest)) largest = difference;  // NaN counts as a difference
-        }
-    }
-    return largest;
-}
-
-double max_difference(const glm::vec4& a, const glm::dvec4& b) {
-    const glm::dvec4 difference = glm::abs(glm::dvec4(a) - b);
-    return std::max({difference.x, difference.y, difference.z, difference.w});
-}
-
 // The light along the ray through a position on the screen, in float64.
 using Truth = std::function<Light(const glm::dvec2&)>;
 
-// Rasterizers place points on a grid of 1/256 of a pixel: the picture is one of a mesh moved by at most 1/512 of a pixel in x and y. So
-// a pixel is right if its value lies between those that the truth takes within that distance of its centre; how far it
-// lies outside, at most over all pixels and channels, is the error. On silhouettes, where the chord jumps, that is either side.
 double error_against(const Truth& truth, const Image& image) {
-    double largest = 0;
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x) {
-            glm::dvec4 low(1e300), high(-1e300);
-            for (const glm::dvec2& offset : {glm::dvec2(0, 0), glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
-                const Light light = truth(glm::dvec2(x + 0.5, y + 0.5) + offset / 512.0);
-                low = glm::min(low, glm::dvec4(light.color, light.opacity));
-                high = glm::max(high, glm::dvec4(light.color, light.opacity));
-            }
-            for (int k = 0; k < 4; ++k) {
-                const double value = image.at(x, y)[k];
-                const double outside = std::max(low[k] - value, value - high[k]);
-                if (!(outside <= largest)) largest = outside;  // NaN is an error
-            }
-        }
-    }
-    return largest;
+    return testing_support::error_but_for_snapping(image, [&](const glm::dvec2& at) {
+        const Light light = truth(at);
+        return glm::dvec4(light.color, light.opacity);
+    });
 }
 
 // Light through the unit cube where the scalar is linear: one segment, integrated to 1e-10.
@@ -173,19 +143,11 @@ TEST(Renderer, PerspectiveIsExactOnALongCell) {
     for (int y = 0; y < small.height; ++y) {
         for (int x = 0; x < small.width; ++x) {
             const auto ray = transform.ray({x + 0.5, y + 0.5});
-            double enter = 0, leave = 1e9;
-            for (int face = 0; face < 4; ++face) {
-                const auto v = face_vertices(mesh.tets[0], face);
-                const glm::dvec3 a = mesh.points[v[0]];
-                const glm::dvec3 outward = glm::cross(mesh.points[v[1]] - a, mesh.points[v[2]] - a);
-                const double t = glm::dot(outward, a - ray.origin) / glm::dot(outward, ray.direction);
-                if (glm::dot(outward, ray.direction) > 0) leave = std::min(leave, t);
-                else enter = std::max(enter, t);
-            }
-            if (leave - enter < 0.05) continue;  // away from the silhouette
+            const Chord chord = chord_in_first_cell(mesh, ray, true);
+            if (chord.length() < 0.05) continue;  // away from the silhouette
             ++inside;
             const auto at = [&](double t) { return f(ray.origin + t * ray.direction); };
-            const Light light = integrate_segment(transfer, at(enter), at(leave), leave - enter);
+            const Light light = integrate_segment(transfer, at(chord.enter), at(chord.leave), chord.length());
             EXPECT_LT(max_difference(image.at(x, y), glm::dvec4(light.color, light.opacity)), 2e-3) << x << ", " << y;
         }
     }

@@ -93,6 +93,7 @@ TEST(SelectScalar, WithoutANameTakesWhatVariesAndDoesNotCount) {
     EXPECT_EQ(select_scalar(mesh, "", "").name, "p");
     // The last point is no point of the file: without it there are whole numbers only.
     EXPECT_EQ(field_to_look_at(mesh, 1), "U");
+    EXPECT_EQ(select_scalar(mesh, "", "", 1).name, "U");
     EXPECT_EQ(field_to_look_at(unit_tet()), std::nullopt);
 }
 

@@ -13,9 +13,12 @@
 
 #include "classify/segment_integral.hpp"
 #include "classify/table_encoding.hpp"
+#include "tests/support/differences.hpp"
 
 namespace cellproj {
 namespace {
+
+using testing_support::distance;
 
 constexpr double longest = 2.0, usual = 0.15;  // lengths that tables are made for
 constexpr double float_half_ulp = 0x1p-24;
@@ -43,18 +46,11 @@ std::vector<Segment> random_segments(int count, double widest, double longest_se
     return segments;
 }
 
-double difference(const Light& a, const Light& b) {
-    double largest = std::abs(a.opacity - b.opacity);
-    for (int c = 0; c < 3; ++c)
-        largest = std::max(largest, std::abs(a.color[c] - b.color[c]));
-    return largest;
-}
-
 double largest_error(const std::string& name, const TransferFunction& transfer, const std::vector<Segment>& segments) {
     const auto method = make(name, transfer);
     double largest = 0.0;
     for (const auto& [s_f, s_b, l] : segments)
-        largest = std::max(largest, difference(method->light(s_f, s_b, l), integrate_segment(transfer, s_f, s_b, l)));
+        largest = std::max(largest, distance(method->light(s_f, s_b, l), integrate_segment(transfer, s_f, s_b, l)));
     return largest;
 }
 
@@ -302,7 +298,7 @@ TEST(SegmentMethod, AStepIsRightBesideItsTexel) {
         for (const auto& [s_f, s_b, l] : random_segments(1000, 1.0, longest)) {
             const double low = std::min(s_f, s_b), high = std::max(s_f, s_b);
             if (high >= 0.5 - 1 / intervals && low <= 0.5 + 1 / intervals) continue;
-            EXPECT_LE(difference(method->light(s_f, s_b, l), integrate_segment(step, s_f, s_b, l)), 4e-7)
+            EXPECT_LE(distance(method->light(s_f, s_b, l), integrate_segment(step, s_f, s_b, l)), 4e-7)
                 << name << " " << s_f;
         }
     }

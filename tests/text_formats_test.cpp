@@ -18,6 +18,7 @@
 
 #include "mesh/error.hpp"
 #include "mesh/text_formats.hpp"
+#include "tests/support/scratch_folder.hpp"
 #include "tests/support/text_meshes.hpp"
 
 namespace cellproj {
@@ -27,15 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace testing_support;
 using Reader = Dataset (*)(const fs::path&);
-
-fs::path scratch_folder() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string(test->test_suite_name()) + "." + test->name();
-    std::replace(name.begin(), name.end(), '/', '.');
-    const fs::path folder = fs::path(testing::TempDir()) / "cellproj_text_formats_test" / name;
-    fs::create_directories(folder);
-    return folder;
-}
 
 fs::path write(const std::string& name, const std::string& bytes) {
     const fs::path file = scratch_folder() / name;

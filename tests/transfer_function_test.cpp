@@ -12,6 +12,7 @@
 #include <string>
 
 #include "mesh/error.hpp"
+#include "tests/support/scratch_folder.hpp"
 #include "tests/support/transfer_errors.hpp"
 
 namespace cellproj {
@@ -290,8 +291,7 @@ TEST(TransferFunctionJson, PresetsAndAxesAreRead) {
 }
 
 TEST(TransferFunctionJson, FilesAreReadAndNamed) {
-    const auto folder = std::filesystem::path(testing::TempDir()) / "cellproj_transfer_function";
-    std::filesystem::create_directories(folder);
+    const auto folder = testing_support::scratch_folder();
     const auto file = folder / "tf.json";
     std::ofstream(file) << R"({"color": [[0,1,1,1]], "extinction": [[0,2]]})";
     EXPECT_EQ(read_transfer_function(file).extinction(0), 2.0);
@@ -300,7 +300,6 @@ TEST(TransferFunctionJson, FilesAreReadAndNamed) {
     expect_words(error_of([&] { read_transfer_function(folder / "none.json"); }), ErrorKind::file,
                  {"none.json", "No such file"});
     expect_words(error_of([&] { read_transfer_function(folder); }), ErrorKind::file, {"a folder"});
-    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "render/ray_light.hpp"
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -22,12 +23,15 @@ namespace cellproj {
 namespace {
 
 using testing_support::chord_in_unit_cube;
+using testing_support::distance;
 using testing_support::grid_mesh;
 using testing_support::linear;
+using testing_support::max_difference;
 using testing_support::point_field;
 using testing_support::view_of_unit_cube;
 
-constexpr ImageSize small{64, 64};
+constexpr int side = CELLPROJ_SANITIZED ? 32 : 64;
+constexpr ImageSize small{side, side};
 constexpr std::array projections{Camera::Projection::parallel, Camera::Projection::perspective};
 
 Renderer& renderer() {
@@ -53,22 +57,6 @@ Scene scene_of_two(TetMesh mesh, TransferFunction transfer, const std::function<
             .field = std::move(field),
             .transfer = std::make_shared<TransferFunction>(std::move(transfer)),
             .opacity_field = std::move(opacity_field)};
-}
-
-double distance(const Light& a, const Light& b) {
-    const glm::dvec3 color = glm::abs(a.color - b.color);
-    return std::max({color.x, color.y, color.z, std::abs(a.opacity - b.opacity)});
-}
-
-double largest(const ImageError& error) { return std::max(error.color.maximum, error.opacity.maximum); }
-
-double max_difference(const Image& a, const Image& b) {
-    double widest = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        const glm::vec4 d = glm::abs(a.pixels[i] - b.pixels[i]);
-        widest = std::max<double>(widest, std::max({d.x, d.y, d.z, d.w}));
-    }
-    return widest;
 }
 
 // ---- The judge.
@@ -148,7 +136,7 @@ TEST(TwoFieldReference, ARampOfColourInABoxOfConstantMedium) {
 
 double error_of(const Scene& scene, const Camera& camera, const char* method) {
     const Image image = renderer().render(scene, camera, small, {.method = parse_method(method)});
-    return largest(compare(image, Reference(scene).picture(camera, small, 1.0 / 512)));
+    return largest(compare(image, Reference(scene).picture(camera, small, rasterizer_slack)));
 }
 
 TEST(TwoFieldPicture, TheJudgeAgrees) {
@@ -215,7 +203,7 @@ TEST(TwoFieldPicture, CellsAreCulledByBothFields) {
     Scene scene = scene_of_two(grid_mesh(8), {OpticalModel::density, {{0, {1, 1, 1}}}, {{20, 0}, {25, 5}, {30, 5}}});
     Statistics statistics;
     const Image image = renderer().render(scene, camera, small, {.method = parse_method("exact:1e-5")}, &statistics);
-    EXPECT_LT(largest(compare(image, Reference(scene).picture(camera, small, 1.0 / 512))), 1e-4);
+    EXPECT_LT(largest(compare(image, Reference(scene).picture(camera, small, rasterizer_slack))), 1e-4);
     EXPECT_GT(statistics.counts.culled, statistics.counts.cells / 4);
 
     // An emitter that shines over the first field where nothing absorbs.

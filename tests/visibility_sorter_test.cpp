@@ -19,35 +19,17 @@
 #include "mesh/error.hpp"
 #include "sort/depth_queue.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/orders.hpp"
 
 namespace cellproj {
 namespace {
 
 using testing_support::delaunay_mesh;
+using testing_support::expect_each_once;
 using testing_support::grid_mesh;
+using testing_support::random_direction;
+using testing_support::random_eye;
 using testing_support::unit_tet;
-
-glm::dvec3 random_direction(std::mt19937_64& random) {
-    std::normal_distribution<double> normal;
-    return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-}
-
-// Eyes all around the unit cube: even ones at infinity, odd ones at a distance of .3 to 10 from its centre, many inside.
-Eye random_eye(std::mt19937_64& random, int i) {
-    const glm::dvec3 direction = random_direction(random);
-    const double distance = 0.3 * std::pow(33.0, std::uniform_real_distribution<double>()(random));
-    return i % 2 ? Eye::at(glm::dvec3(0.5) + distance * direction) : Eye::towards(direction);
-}
-
-void expect_permutation(std::span<const CellId> order, std::size_t cells) {
-    ASSERT_EQ(order.size(), cells);
-    std::vector<bool> seen(cells, false);
-    for (const CellId cell : order) {
-        ASSERT_LT(cell, cells);
-        ASSERT_FALSE(seen[cell]) << "cell " << cell << " twice";
-        seen[cell] = true;
-    }
-}
 
 struct Interval {
     double enter, leave;
@@ -101,7 +83,7 @@ TEST_P(DelaunayOrder, HasNoViolationFromAnyEye) {
         const auto order = sorter.order(eye, &report);
         ASSERT_EQ(report.unordered, 0U) << "eye " << i;
         ASSERT_EQ(count_order_violations(mesh, sorter.adjacency(), order, eye), 0U) << "eye " << i;
-        if (i < 4) expect_permutation(order.items, mesh.tets.size());
+        if (i < 4) expect_each_once(order.items, mesh.tets.size());
     }
 }
 
@@ -150,7 +132,7 @@ TEST(VisibilitySorter, EyesInThePlanesOfFaces) {
                            Eye::at({0, 0, 0}), Eye::at({1.0 / 6, 1.0 / 6, 0.25}), Eye::at({2, 0.5, 0.5})}) {
         OrderReport report;
         const auto order = sorter.order(eye, &report);
-        expect_permutation(order.items, mesh.tets.size());
+        expect_each_once(order.items, mesh.tets.size());
         EXPECT_EQ(report.unordered, 0U);
         EXPECT_EQ(count_order_violations(mesh, sorter.adjacency(), order, eye), 0U);
     }
@@ -195,7 +177,7 @@ TEST(VisibilitySorter, ACycleIsLeftByDepthAndCounted) {
     VisibilitySorter sorter(mesh);
     OrderReport report;
     const auto order = sorter.order(above, &report, OrderMethod::mpvo);
-    expect_permutation(order.items, mesh.tets.size());
+    expect_each_once(order.items, mesh.tets.size());
     EXPECT_GE(report.unordered, 1U);
     EXPECT_FALSE(report.exact);
     EXPECT_GE(count_order_violations(mesh, sorter.adjacency(), order, above), 1U);  // no order can respect a cycle
@@ -208,7 +190,7 @@ TEST(VisibilitySorter, ACycleIsLeftByDepthAndCounted) {
     EXPECT_TRUE(report.exact);
     EXPECT_EQ(report.cycles, 1U);
     // Without pieces the cells that were cut are whole again, and counted.
-    expect_permutation(order_cells(mesh, above, &report), mesh.tets.size());
+    expect_each_once(order_cells(mesh, above, &report), mesh.tets.size());
     EXPECT_GE(report.unordered, 1U);
     EXPECT_FALSE(report.exact);
 }
@@ -222,7 +204,7 @@ TEST(VisibilitySorter, FlatNeedleAndPointCellsDoNotStallIt) {
         mesh.tets.push_back(i % 3 == 0 ? std::array{a, a, a, a} : i % 3 == 1 ? std::array{a, b, a, b} : std::array{a, b, c, c});
     }
     VisibilitySorter sorter(mesh);
-    for (int i = 0; i < 10; ++i) expect_permutation(sorter.order(random_eye(random, i)).items, mesh.tets.size());
+    for (int i = 0; i < 10; ++i) expect_each_once(sorter.order(random_eye(random, i)).items, mesh.tets.size());
 }
 
 TEST(DepthQueue, GivesTheDeepestFirstAndTheLatestAmongEquals) {

@@ -47,7 +47,7 @@ void measure(const std::vector<std::string>& methods) {
         index = reference.shared_index();
         for (const auto projection : {Camera::Projection::parallel, Camera::Projection::perspective}) {
             const Camera camera = testing_support::view_of_unit_cube(projection);
-            const std::vector<PixelTruth> truths = reference.picture(camera, size, 1.0 / 512);
+            const std::vector<PixelTruth> truths = reference.picture(camera, size, rasterizer_slack);
             for (const Backend backend : {Backend::gl_osmesa, Backend::cpu}) {
                 const auto renderer = make_renderer(backend);
                 for (const std::string& method : methods) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// cellproj_frames: every figure of performance in the README, and VTK's beside them.
+// cellproj_frames: whole frames of every backend, timed and judged, and VTK's beside them: the times of frames in the README.
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
     std::vector<std::string> projections{"perspective"};
     std::string method = "integral", csv, markdown;
     bool all = false;
-    // ZSweep takes 7 to 16 s a frame where the others take one (measured.md): by name only.
+    // ZSweep takes 7 to 16 s a frame where the others take one: by name only.
     std::vector<std::string> names = contender_names();
     for (const std::string& name : names)
         if (name != "cpu-pixel" && name != "vtk-zsweep") options.contenders.push_back(name);

@@ -5,7 +5,6 @@
 // along an edge of the picture.
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <map>
 #include <memory>
 #include <vector>
@@ -38,12 +37,6 @@ Scene scene(int boxes, Colors colors) {
     return chosen;
 }
 
-Camera view(int i) {
-    const double angle = 0.7 + 0.37 * i;
-    return frame_bounds({glm::dvec3(0), glm::dvec3(1)}, Camera::Projection::perspective,
-                        {std::cos(angle), std::sin(angle), 0.4 + 0.3 * std::sin(1.7 * angle)}, {0, 0, 1}, 1.0);
-}
-
 ImageSize square(benchmark::State& state) { return {static_cast<int>(state.range(1)), static_cast<int>(state.range(1))}; }
 
 void per_cell(benchmark::State& state, const Scene& s) { state.counters["tets"] = static_cast<double>(s.mesh->tets.size()); }
@@ -51,9 +44,9 @@ void per_cell(benchmark::State& state, const Scene& s) { state.counters["tets"] 
 void CpuFrame(benchmark::State& state, Colors colors) {  // camera to pixels in memory
     const Scene s = scene(static_cast<int>(state.range(0)), colors);
     const auto renderer = make_renderer(Backend::cpu);
-    renderer->render(s, view(0), square(state));
+    renderer->render(s, scenes::measured_view(0), square(state));
     int i = 1;
-    for (auto _ : state) benchmark::DoNotOptimize(renderer->render(s, view(i++), square(state)).pixels.data());
+    for (auto _ : state) benchmark::DoNotOptimize(renderer->render(s, scenes::measured_view(i++), square(state)).pixels.data());
     per_cell(state, s);
 }
 
@@ -61,7 +54,7 @@ void CpuSort(benchmark::State& state) {
     const Scene s = scene(static_cast<int>(state.range(0)), Colors::ramp);
     PreparedScene prepared(s);
     int i = 0;
-    for (auto _ : state) benchmark::DoNotOptimize(prepared.sorter().order(view(i++).viewpoint()).items.data());
+    for (auto _ : state) benchmark::DoNotOptimize(prepared.sorter().order(scenes::measured_view(i++).viewpoint()).items.data());
     per_cell(state, s);
 }
 
@@ -84,7 +77,7 @@ void CpuStage(benchmark::State& state, Stage stage, Colors colors) {
     const auto off = [&](Stage which) { if (which == stage) state.PauseTiming(); };
     for (auto _ : state) {
         state.PauseTiming();
-        const Camera camera = view(static_cast<int>(++frames));
+        const Camera camera = scenes::measured_view(static_cast<int>(++frames));
         const ViewOrder order = prepared.sorter().order(camera.viewpoint());
         on(Stage::transform);
         mesh.set_view(camera, size);

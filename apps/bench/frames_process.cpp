@@ -5,7 +5,6 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,15 +23,6 @@ namespace cellproj::bench {
 namespace {
 
 [[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
-
-std::size_t status_kilobytes(const std::string& key) {
-    std::ifstream status("/proc/self/status");
-    for (std::string word; status >> word;) {
-        std::size_t kilobytes = 0;
-        if (word == key && status >> kilobytes) return kilobytes;
-    }
-    return 0;
-}
 
 }  // namespace
 
@@ -165,16 +155,6 @@ void use_cpus(int count) {
     }
     sched_setaffinity(0, sizeof some, &some);
 }
-
-double user_ms() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1e3 * static_cast<double>(usage.ru_utime.tv_sec) + 1e-3 * static_cast<double>(usage.ru_utime.tv_usec);
-}
-
-std::size_t resident_bytes() { return 1024 * status_kilobytes("VmRSS:"); }
-
-std::size_t peak_resident_bytes() { return 1024 * status_kilobytes("VmHWM:"); }
 
 void forget_peak_memory() {
     malloc_trim(0);

@@ -115,12 +115,7 @@ private:
 // This process's CPUs: the first `count` of those it may use; 0: all. Threads that start afterwards share them.
 void use_cpus(int count);
 
-// Milliseconds of user CPU time of this process so far, all threads.
-double user_ms();
-
-// Resident memory [bytes]: now, and the most since `forget_peak_memory`, which also gives back what was freed.
-std::size_t resident_bytes();
-std::size_t peak_resident_bytes();
+// Gives back what was freed, and makes the resident memory of now the peak (peak_memory_bytes).
 void forget_peak_memory();
 
 }  // namespace cellproj::bench

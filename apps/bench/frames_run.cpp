@@ -8,10 +8,13 @@
 #include <memory>
 #include <stdexcept>
 
+#include "apps/bench/cpu_time.hpp"
 #include "apps/bench/frames_contender.hpp"
 #include "apps/bench/frames_process.hpp"
 #include "apps/bench/frames_scenes.hpp"
+#include "apps/scenes/measured_scenes.hpp"
 #include "render/reference.hpp"
+#include "render/statistics.hpp"
 #if CELLPROJ_BENCH_VTK
 #include "apps/bench/vtk_frames.hpp"
 #endif
@@ -48,7 +51,7 @@ private:
 
 // A scene as it goes from the child that made it to those that draw it.
 struct SceneHead {
-    std::size_t points, cells;
+    std::size_t cells;
     Bounds box;
 };
 
@@ -103,19 +106,19 @@ void serve(const Task& task, SharedBytes& scene_bytes, SharedBytes& picture_byte
     use_cpus(task.options.threads);
     const auto contender = make_contender(task.row.contender, read_scene(scene_bytes, task.row.transfer), task.options);
     forget_peak_memory();
-    const std::size_t before = resident_bytes();
+    const std::size_t before = peak_memory_bytes();
     const Stopwatch watch;
     contender->set_up();
     const double set_up_ms = watch.ms();
-    contender->draw(make_view(task.box, task.projection, 0));
+    contender->draw(scenes::measured_view(0, task.box, task.projection));
     const double first_ms = watch.ms();
-    const std::size_t peak = peak_resident_bytes();
+    const std::size_t peak = peak_memory_bytes();
     const Image image = contender->picture();
     picture_bytes.write(image.pixels);
     if (!pictures.empty()) save_picture(pictures, task.row, image);
     pipe.send(FirstCost{set_up_ms, first_ms, static_cast<double>(peak > before ? peak - before : 0), contender->ray_shift()});
     for (int view = 0; pipe.receive(view);) {
-        const Camera camera = make_view(task.box, task.projection, view);
+        const Camera camera = scenes::measured_view(view, task.box, task.projection);
         const double user = user_ms();
         const Stopwatch frame;
         const Statistics statistics = contender->draw(camera);
@@ -204,7 +207,7 @@ void judge(std::vector<Player>& players, SharedBytes& scene_bytes, int judged) {
             ErrorMeasure error{unknown, unknown, unknown};
             if (player.task.row.failure.empty()) {
                 const ImageSize size = player.task.options.size;
-                const Camera camera = make_view(player.task.box, player.task.projection, 0);
+                const Camera camera = scenes::measured_view(0, player.task.box, player.task.projection);
                 Image image(size.width, size.height);
                 image.pixels = player.picture->read<glm::vec4>();
                 const auto sample = reference.sample(camera, size, static_cast<std::size_t>(judged));
@@ -279,7 +282,7 @@ std::vector<Row> run(const RunOptions& options) {
         Child maker([&](const Pipe& pipe) {
             const FieldMesh scene = make_mesh(name);
             write_scene(bytes, scene);
-            pipe.send(SceneHead{scene.mesh.points.size(), scene.mesh.tets.size(), bounds(scene.mesh.points)});
+            pipe.send(SceneHead{scene.mesh.tets.size(), bounds(scene.mesh.points)});
         });
         const auto head = maker.receive<SceneHead>();
         std::fprintf(stderr, "%s: %zu tetrahedra\n", name.c_str(), head.cells);

@@ -98,9 +98,4 @@ TransferFunction make_transfer(const std::string& name, const FieldMesh& scene) 
     throw Error({ErrorKind::option, "--transfers", "ramp or peaks", "\"" + name + "\"", ""});
 }
 
-Camera make_view(const Bounds& bounds, Camera::Projection projection, int i) {
-    const double angle = 0.7 + 0.37 * i;
-    return frame_bounds(bounds, projection, {std::cos(angle), std::sin(angle), 0.4 + 0.3 * std::sin(1.7 * angle)}, {0, 0, 1}, 1.0);
-}
-
 }  // namespace cellproj::bench

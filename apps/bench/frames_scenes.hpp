@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What cellproj_frames draws: meshes, transfer functions and views by name.
+// What cellproj_frames draws: meshes and transfer functions by name.
 #pragma once
 
 #include <string>
@@ -8,7 +8,6 @@
 #include "classify/transfer_function.hpp"
 #include "mesh/scalar_field.hpp"
 #include "mesh/tet_mesh.hpp"
-#include "project/camera.hpp"
 
 namespace cellproj::bench {
 
@@ -19,7 +18,7 @@ struct FieldMesh {
 };
 
 // "grid:N": N points along each edge of the unit cube (N ≥ 2), those inside moved by up to a fifth of a box, at random; six
-//   tetrahedra a box, in one order of their points, as measured.md has them: 196,608 for 33, 1,572,864 for 65, 6,000,000 for 101.
+//   tetrahedra a box, in one order of their points: 196,608 for 33, 1,572,864 for 65, 6,000,000 for 101.
 // "delaunay:N": N random points in the unit cube, about 6.5 tetrahedra each; needs the mesher.
 // "bluntfin": NASA's, density; needs the files beside the project.
 // Throws Error: (option) for another name, (environment, file) when the mesher or the files are not there.
@@ -27,9 +26,5 @@ FieldMesh make_mesh(const std::string& name);
 
 // "ramp" or "peaks" (apps/scenes/measured_scenes.hpp) over low..high; Error (option) otherwise.
 TransferFunction make_transfer(const std::string& name, const FieldMesh& scene);
-
-// The i-th view, i ≥ 0: turned by 0.37 rad against the one before and tilted, so that no two are alike and none looks along an
-// axis. The mesh fills the square picture.
-Camera make_view(const Bounds& bounds, Camera::Projection projection, int i);
 
 }  // namespace cellproj::bench

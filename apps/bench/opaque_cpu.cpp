@@ -5,7 +5,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "apps/scenes/measured_scenes.hpp"
 #include "classify/piece_table.hpp"
@@ -44,9 +43,7 @@ void CpuOpaque(benchmark::State& state, bool terminates) {
     int i = 0;
     std::size_t drawn = 0;
     for (auto _ : state) {
-        const double angle = 0.7 + 0.37 * i++;
-        const Camera camera = frame_bounds({glm::dvec3(0), glm::dvec3(1)}, Camera::Projection::perspective,
-                                           {std::cos(angle), std::sin(angle), 0.4 + 0.3 * std::sin(1.7 * angle)}, {0, 0, 1}, 1.0);
+        const Camera camera = scenes::measured_view(i++);
         const ViewOrder order = prepared.sorter().order(camera.viewpoint());
         mesh.set_view(camera, {side, side});
         Image image(side, side);

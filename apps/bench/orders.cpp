@@ -3,8 +3,6 @@
 // cellproj_orders [EYES [RAYS]]: how many of RAYS (4096) random rays from each of EYES (20) eyes meet the cells in another order than the
 // one that each method gives, on meshes with holes, pieces and cycles; and the time that it takes. Rays go through pixel centres of
 // a picture of 512×512, where sxmpvo is exact.
-#include <sys/resource.h>
-
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/bench/cpu_time.hpp"
 #include "mesh/error.hpp"
 #include "mesh/read.hpp"
 #include "mesh/tetrahedralize.hpp"
@@ -29,12 +28,7 @@ namespace {
 
 using namespace cellproj;
 using namespace cellproj::testing_support;
-
-double cpu_ms() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1e3 * static_cast<double>(usage.ru_utime.tv_sec) + 1e-3 * static_cast<double>(usage.ru_utime.tv_usec);
-}
+using bench::user_ms;
 
 struct Row {
     std::size_t wrong = 0, inexact_reports = 0, cycles = 0, split = 0;
@@ -54,17 +48,17 @@ void judge(const std::string& name, const TetMesh& mesh, int eyes, int rays) {
         const auto through = random_pixel_rays(index, grid, rays, random);
         for (int m = 0; m < 4; ++m) {
             OrderReport report;
-            const double start = cpu_ms();
+            const double start = user_ms();
             const ViewOrder order = sorter.order(grid.eye, &report, methods[m], &grid);
-            rows[m].ms += (cpu_ms() - start) / eyes;
+            rows[m].ms += (user_ms() - start) / eyes;
             rows[m].wrong += wrong_rays(mesh, index, order, through);
             rows[m].inexact_reports += report.exact ? 0 : 1;
             rows[m].cycles += report.cycles;
             rows[m].split += report.split_cells;
         }
-        const double start = cpu_ms();
+        const double start = user_ms();
         (void)scan_boundary(mesh, boundary, grid);
-        scan_ms += (cpu_ms() - start) / eyes;
+        scan_ms += (user_ms() - start) / eyes;
     }
     std::printf("%-14s %8zu %7zu |", name.c_str(), mesh.tets.size(), boundary.size());
     for (const Row& row : rows) std::printf(" %7zu %6.1f |", row.wrong, row.ms);

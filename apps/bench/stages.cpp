@@ -5,7 +5,6 @@
 // --benchmark_repetitions=5 --benchmark_report_aggregates_only=true.
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <map>
 #include <memory>
 #include <vector>
@@ -44,12 +43,6 @@ const Scene& scene(int boxes) {
     return s;
 }
 
-Camera view(int i) {
-    const double angle = 0.7 + 0.37 * i;
-    return frame_bounds({glm::dvec3(0), glm::dvec3(1)}, Camera::Projection::perspective,
-                        {std::cos(angle), std::sin(angle), 0.4 + 0.3 * std::sin(1.7 * angle)}, {0, 0, 1}, 1.0);
-}
-
 void per_cell(benchmark::State& state, const Scene& s) {
     state.counters["tets"] = static_cast<double>(s.mesh->tets.size());
     state.counters["tets/s"] =
@@ -75,9 +68,9 @@ void Table(benchmark::State& state) {
     }
 }
 
-void Update(benchmark::State& state) {  // another transfer function for a scene that is prepared
+void Update(benchmark::State& state, Backend backend) {  // another transfer function for a scene that is prepared
     Scene s = scene(static_cast<int>(state.range(0)));
-    const auto renderer = make_renderer(Backend::gl_osmesa);
+    const auto renderer = make_renderer(backend);
     const Quality quality{.method = parse_method("integral")};
     renderer->prepare(s, quality);
     for (auto _ : state) {
@@ -91,7 +84,7 @@ void Sort(benchmark::State& state) {
     const Scene& s = scene(static_cast<int>(state.range(0)));
     VisibilitySorter sorter(*s.mesh);
     int i = 0;
-    for (auto _ : state) benchmark::DoNotOptimize(sorter.order(view(i++).viewpoint()));
+    for (auto _ : state) benchmark::DoNotOptimize(sorter.order(scenes::measured_view(i++).viewpoint()));
     per_cell(state, s);
 }
 
@@ -102,7 +95,7 @@ void Project(benchmark::State& state) {  // transform, classes, silhouettes; wit
     int i = 0;
     for (auto _ : state) {
         state.PauseTiming();
-        const Camera camera = view(i++);
+        const Camera camera = scenes::measured_view(i++);
         const auto order = prepared.sorter().order(camera.viewpoint());
         batch.clear();
         state.ResumeTiming();
@@ -116,9 +109,9 @@ void Project(benchmark::State& state) {  // transform, classes, silhouettes; wit
 void Frame(benchmark::State& state) {  // camera to pixels in memory
     const Scene& s = scene(static_cast<int>(state.range(0)));
     const auto renderer = make_renderer(Backend::gl_osmesa);
-    renderer->render(s, view(0), size);
+    renderer->render(s, scenes::measured_view(0), size);
     int i = 1;
-    for (auto _ : state) benchmark::DoNotOptimize(renderer->render(s, view(i++), size).pixels.data());
+    for (auto _ : state) benchmark::DoNotOptimize(renderer->render(s, scenes::measured_view(i++), size).pixels.data());
     per_cell(state, s);
 }
 
@@ -132,16 +125,17 @@ void FrameByNodes(benchmark::State& state) {
     s.transfer = std::make_shared<TransferFunction>(OpticalModel::density, ramp().color_nodes(), nodes);
     const Quality table{.method = {.kind = MethodKind::preint3d}};
     const auto renderer = make_renderer(Backend::gl_osmesa);
-    renderer->render(s, view(0), size, table);
+    renderer->render(s, scenes::measured_view(0), size, table);
     int i = 1;
-    for (auto _ : state) benchmark::DoNotOptimize(renderer->render(s, view(i++), size, table).pixels.data());
+    for (auto _ : state) benchmark::DoNotOptimize(renderer->render(s, scenes::measured_view(i++), size, table).pixels.data());
     per_cell(state, s);
 }
 
 BENCHMARK(Adjacency)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Prepare)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Table)->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(Update)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(Update, cpu, Backend::cpu)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(Update, gl, Backend::gl_osmesa)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Sort)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Project)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(FrameByNodes)->Arg(2)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime();

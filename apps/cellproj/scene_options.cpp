@@ -113,16 +113,14 @@ void add_surfaces(const SceneOptions& options, Scene& scene) {
 
 // Cell fields are exact as constants; averaged to the points they look smooth.
 ScalarField load_field(const SceneOptions& options, const Input& input, const std::string& name) {
-    ScalarField field = select_scalar(*input.mesh, name, input.name);
+    ScalarField field = select_scalar(*input.mesh, name, input.name, input.report.added_points);
     if (options.nan) field = with_finite_values(std::move(field), *options.nan);
     const bool averaged = field.location == FieldLocation::cells && options.cell_values == "averaged";
     return averaged ? averaged_to_points(*input.mesh, field) : field;
 }
 
 ScalarField choose_field(const SceneOptions& options, const Input& input) {
-    return load_field(options, input,
-                      !options.field.empty() ? options.field
-                                             : field_to_look_at(*input.mesh, input.report.added_points).value_or(""));
+    return load_field(options, input, options.field);
 }
 
 void warn_of_values(const ScalarField& field) {

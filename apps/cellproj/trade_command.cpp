@@ -110,16 +110,16 @@ struct Truths {
 // the usual sample tells.
 Truths find_truths(const TradeCommandOptions& options, const Scene& scene, const Camera& camera, ImageSize size) {
     constexpr std::size_t usual_sample = 20000;
-    constexpr double affordable_ms = 30000, slack = 1.0 / 512;  // what the rasterizer's grid may do to a silhouette
+    constexpr double affordable_ms = 30000;
     const Progress progress("finding the truth");
     const Reference reference(scene);
     const std::vector<PixelId> seen = reference.sample(camera, size, std::numeric_limits<std::size_t>::max());
     const bool thinned = size.width * static_cast<double>(size.height) > 1e6;  // by Reference::sample
     const Stopwatch judging;
-    auto truths = reference.pixels(camera, size, reference.sample(camera, size, options.sample.value_or(usual_sample)), slack);
+    auto truths = reference.pixels(camera, size, reference.sample(camera, size, options.sample.value_or(usual_sample)), rasterizer_slack);
     const double share = static_cast<double>(truths.size()) / static_cast<double>(std::max<std::size_t>(seen.size(), 1));
     if (!options.sample && truths.size() < seen.size() && !thinned && judging.ms() < affordable_ms * share)
-        truths = reference.pixels(camera, size, seen, slack);
+        truths = reference.pixels(camera, size, seen, rasterizer_slack);
     const bool whole_picture = !thinned && truths.size() == seen.size();
     return {std::move(truths), whole_picture};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is measured, everywhere the same: a field in the unit cube and the two transfer functions whose errors and times the issues
-// state. A smooth ramp is what samplers are best at; of six narrow peaks most cells that hold light hold a node.
+// What is measured, everywhere the same: a field in the unit cube, two transfer functions and the views. A smooth ramp is what samplers
+// are best at; of six narrow peaks most cells that hold light hold a node.
 #pragma once
 
 #include <cmath>
@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "classify/transfer_function.hpp"
+#include "project/camera.hpp"
 
 namespace cellproj::scenes {
 
@@ -45,6 +46,14 @@ inline TransferFunction table_peaks() {
         extinctions.insert(extinctions.end(), {{center - 0.01, 0}, {center, 20}, {center + 0.01, 0}});
     }
     return {OpticalModel::density, colors, extinctions};
+}
+
+// The i-th view, i ≥ 0: turned by 0.37 rad against the one before and tilted, so that no two are alike and none looks along an
+// axis. The box fills the square picture.
+inline Camera measured_view(int i, const Bounds& box = {glm::dvec3(0), glm::dvec3(1)},
+                            Camera::Projection projection = Camera::Projection::perspective) {
+    const double angle = 0.7 + 0.37 * i;
+    return frame_bounds(box, projection, {std::cos(angle), std::sin(angle), 0.4 + 0.3 * std::sin(1.7 * angle)}, {0, 0, 1}, 1.0);
 }
 
 }  // namespace cellproj::scenes

@@ -13,6 +13,8 @@
 #include <iterator>
 #include <string>
 
+#include "tests/support/scratch_folder.hpp"
+
 namespace cellproj::testing_support {
 
 inline std::string bytes_of(const std::filesystem::path& file) {
@@ -24,11 +26,7 @@ inline std::string bytes_of(const std::filesystem::path& file) {
 class FolderTest : public testing::Test {
 protected:
     void SetUp() override {
-        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::path(testing::TempDir()) /
-                  ("cellproj_" + std::string(test->test_suite_name()) + "_" + test->name());
-        std::filesystem::remove_all(folder_);
-        std::filesystem::create_directories(folder_);
+        folder_ = scratch_folder();
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -47,19 +45,22 @@ struct Outcome {
     std::string text;  // standard output and error together
 };
 
-// Runs cellproj with these arguments in `folder`, behind settings of the environment: "NAME=value".
-inline Outcome run_program(const std::filesystem::path& folder, const std::string& arguments,
-                           const std::string& environment = "") {
-    const std::string command =
-        "cd '" + folder.string() + "' && " + environment + " '" + CELLPROJ_PROGRAM + "' " + arguments + " 2>&1";
+// Runs a line of the shell in `folder`.
+inline Outcome run_command(const std::filesystem::path& folder, const std::string& command) {
     Outcome outcome;
-    FILE* pipe = popen(command.c_str(), "r");
+    FILE* pipe = popen(("cd '" + folder.string() + "' && " + command + " 2>&1").c_str(), "r");
     std::array<char, 4096> buffer{};
     for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
         outcome.text.append(buffer.data(), n);
     const int status = pclose(pipe);
     outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return outcome;
+}
+
+// Runs cellproj with these arguments in `folder`, behind settings of the environment: "NAME=value".
+inline Outcome run_program(const std::filesystem::path& folder, const std::string& arguments,
+                           const std::string& environment = "") {
+    return run_command(folder, environment + " '" + CELLPROJ_PROGRAM + "' " + arguments);
 }
 
 }  // namespace cellproj::testing_support

@@ -33,6 +33,12 @@ TetMesh relabelled(const TetMesh& mesh, std::mt19937_64& random) {
     return other;
 }
 
+TetMesh shuffled(TetMesh mesh, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::shuffle(mesh.tets.begin(), mesh.tets.end(), random);
+    return relabelled(mesh, random);
+}
+
 Dataset single_cell(CellKind kind, std::vector<glm::dvec3> points, std::vector<VertexId> vertices) {
     Dataset dataset;
     dataset.source = "cell";

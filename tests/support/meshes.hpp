@@ -30,6 +30,9 @@ TetMesh delaunay_mesh(int points, std::uint64_t seed = 1);
 // The same mesh under other numbers of its points: shape, order and corners of the cells stay.
 TetMesh relabelled(const TetMesh& mesh, std::mt19937_64& random);
 
+// The same mesh with its cells and its points in another order.
+TetMesh shuffled(TetMesh mesh, std::uint64_t seed);
+
 // The corners of the unit cube in the order of a hexahedron, and a dataset of one cell.
 inline const std::vector<glm::dvec3> cube_corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                                   {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};

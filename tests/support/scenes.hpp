@@ -8,6 +8,8 @@
 #include <memory>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include "project/camera.hpp"
 #include "render/scene.hpp"
 #include "tests/support/meshes.hpp"
@@ -52,6 +54,19 @@ inline Chord chord_in_unit_cube(const ScreenTransform::Ray& ray, bool from_origi
         const double a = (0 - ray.origin[axis]) / ray.direction[axis], b = (1 - ray.origin[axis]) / ray.direction[axis];
         chord.enter = std::max(chord.enter, std::min(a, b));
         chord.leave = std::min(chord.leave, std::max(a, b));
+    }
+    return chord;
+}
+
+// The part of a ray inside the first cell of a mesh, by its four planes, from the eye on; none is a length of 0.
+inline Chord chord_in_first_cell(const TetMesh& mesh, const ScreenTransform::Ray& ray, bool from_origin) {
+    Chord chord{from_origin ? 0 : -1e9, 1e9};
+    for (int face = 0; face < 4; ++face) {
+        const auto v = face_vertices(mesh.tets[0], face);
+        const glm::dvec3 a = mesh.points[v[0]], outward = glm::cross(mesh.points[v[1]] - a, mesh.points[v[2]] - a);
+        const double speed = glm::dot(outward, ray.direction), t = glm::dot(outward, a - ray.origin) / speed;
+        if (speed > 0) chord.leave = std::min(chord.leave, t);
+        if (speed < 0) chord.enter = std::max(chord.enter, t);
     }
     return chord;
 }
