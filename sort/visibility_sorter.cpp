@@ -82,6 +82,8 @@ struct VisibilitySorter::State {
     ViewOrder only_visible(const ViewOrder& order, std::span<const std::uint8_t> visible);
     ViewOrder order_exactly(const Eye& eye, const PixelGrid* pixels, OrderReport& report);
     std::span<const CellId> in_callers_numbers(std::span<const CellId> places);
+    std::span<const CellId> in_place_in_callers_numbers(std::span<CellId> places);
+    void renumber(std::span<const CellId> places, std::span<CellId> cells) const;
 };
 
 VisibilitySorter::VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency)
@@ -160,18 +162,16 @@ bool VisibilitySorter::State::is_delaunay() {
 }
 
 std::span<const CellId> VisibilitySorter::State::order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible) {
-    find_centroid_keys(graph, eye, visible, key_sort.keys(graph.size()));
-    return graph.keeps_order() ? key_sort.sort() : key_sort.sort(graph.cells());
+    return in_place_in_callers_numbers(key_sort.sort(graph.size(), centroid_keys(graph, eye, visible)));
 }
 
 std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible,
                                                                  OrderReport& report) {
     if (!powers) powers.emplace(graph);
-    powers->find(graph, eye, visible, key_sort.keys(graph.size()));
-    auto places = key_sort.sort();
-    if (!is_delaunay()) return in_callers_numbers(places);
-    report.exact = powers->settle(graph, eye, places);
-    if (report.exact) return in_callers_numbers(places);
+    auto places = key_sort.sort(graph.size(), powers->keys(graph, eye, visible));
+    if (!is_delaunay()) return in_place_in_callers_numbers(places);
+    report.exact = powers->settle(graph, eye, places, key_sort.scratch());
+    if (report.exact) return in_place_in_callers_numbers(places);
     if (visible.empty()) {
         make_room_for(OrderMethod::mpvo);
         return order_by_relations(eye, report);
@@ -179,9 +179,9 @@ std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye,
     // A relation in doubt leads through a cell that was left out: with all cells.
     const auto all = order_by_powers(eye, {}, report);
     if (report.method != OrderMethod::power) return all;
-    places = key_sort.sorted();
-    const auto last = std::remove_if(places.begin(), places.end(), [&](CellId place) { return visible[graph.cell(place)] == 0; });
-    return in_callers_numbers(places.first(static_cast<std::size_t>(last - places.begin())));
+    const auto cells = key_sort.sorted();  // which `all` stands in
+    const auto last = std::remove_if(cells.begin(), cells.end(), [&](CellId cell) { return visible[cell] == 0; });
+    return cells.first(static_cast<std::size_t>(last - cells.begin()));
 }
 
 // In a mesh that fills a convex body any topological order will do; fewer than all when there are cycles. Elsewhere depth has to help.
@@ -225,10 +225,19 @@ bool VisibilitySorter::State::close_to_last(const Eye& eye) const {
 std::span<const CellId> VisibilitySorter::State::in_callers_numbers(std::span<const CellId> places) {
     if (graph.keeps_order()) return places;
     items.resize(places.size());
-    oneapi::tbb::parallel_for(Range(0, places.size(), cells_per_task), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) items[i] = graph.cell(places[i]);
-    });
+    renumber(places, items);
     return items;
+}
+
+std::span<const CellId> VisibilitySorter::State::in_place_in_callers_numbers(std::span<CellId> places) {
+    if (!graph.keeps_order()) renumber(places, places);
+    return places;
+}
+
+void VisibilitySorter::State::renumber(std::span<const CellId> places, std::span<CellId> cells) const {
+    oneapi::tbb::parallel_for(Range(0, places.size(), cells_per_task), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) cells[i] = graph.cell(places[i]);
+    });
 }
 
 std::size_t VisibilitySorter::count_violations(const ViewOrder& order, const Eye& eye) const {
