@@ -189,7 +189,9 @@ void CellGraph::find_sides() {
             orientations[i] = static_cast<std::int8_t>(orientation(p[t[0]], p[t[1]], p[t[2]], p[t[3]]));
         }
     });
-    flat_cells_ = static_cast<std::size_t>(std::count(orientations.begin(), orientations.end(), std::int8_t{0}));
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (orientations[i] == 0) flat_.push_back(static_cast<CellId>(i));
+    }
 
     std::vector<std::uint8_t> folded(size());  // a bit per face
     oneapi::tbb::parallel_for(Range(0, size(), cells_per_task), [&](const Range& range) {
@@ -236,17 +238,7 @@ int CellGraph::beyond(const Eye& eye, CellId place, int face) const {
     return (faces_[place] >> face & 1) != 0 ? -side : side;
 }
 
-Adjacency CellGraph::adjacency() const {
-    Adjacency adjacency;
-    adjacency.neighbours.resize(size());
-    for (std::size_t i = 0; i < size(); ++i) {
-        for (std::size_t face = 0; face < 4; ++face) {
-            const CellId other = neighbours_[i][face];
-            adjacency.neighbours[cell(static_cast<CellId>(i))][face] = other == nobody() ? no_cell : cell(other);
-        }
-    }
-    return adjacency;
-}
+bool CellGraph::is_flat(CellId place) const { return std::binary_search(flat_.begin(), flat_.end(), place); }
 
 glm::dvec3 CellGraph::scaled(const Eye& eye) const {
     if (!eye.at_infinity) return (eye.xyz - center_) * scale_;

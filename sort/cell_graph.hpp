@@ -49,8 +49,8 @@ public:
     bool on_boundary(CellId place) const { return (faces_[place] >> 4) != 0x0f; }
     // Faces whose two cells lie on the same side: the mesh overlaps itself there, and they tell no order.
     std::size_t folded_faces() const { return folded_faces_; }
-    // Cells without volume.
-    std::size_t flat_cells() const { return flat_cells_; }
+    std::size_t flat_cells() const { return flat_.size(); }
+    bool is_flat(CellId place) const;  // without volume
 
     // An eye, or the direction to it, in the graph's own coordinates, in which points lie within ±1. A direction's largest coordinate is 1.
     glm::dvec3 scaled(const Eye& eye) const;
@@ -59,8 +59,6 @@ public:
 
     // Where the eye lies with respect to face i: +1 on the neighbour's side, −1 on the cell's, 0 in its plane. Exact.
     int beyond(const Eye& eye, CellId place, int face) const;
-    // The adjacency in the caller's numbers, without folded faces.
-    Adjacency adjacency() const;
 
 private:
     struct View;
@@ -86,7 +84,8 @@ private:
     // #T: bits 0–3: the cell lies on the outer side of its face i (it is inverted, or flat and its neighbour says so); bits 4–7: there
     // is a neighbour.
     std::vector<std::uint8_t> faces_;
-    std::size_t folded_faces_ = 0, flat_cells_ = 0;
+    std::size_t folded_faces_ = 0;
+    std::vector<CellId> flat_;  // places, ascending
 };
 
 }  // namespace cellproj

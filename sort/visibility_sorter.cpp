@@ -38,33 +38,19 @@ std::vector<std::uint32_t> positions(const ViewOrder& order, std::size_t cells) 
     return position;
 }
 
-// Counts the faces of all cells for which `wrong(cell, face)` holds.
-template <class Wrong>
-std::size_t count_faces(std::size_t cells, Wrong wrong) {
-    const auto count = [&](const Range& range, std::size_t so_far) {
-        for (std::size_t c = range.begin(); c != range.end(); ++c) {
-            for (int face = 0; face < 4; ++face) so_far += wrong(static_cast<CellId>(c), face) ? 1 : 0;
-        }
-        return so_far;
-    };
-    return oneapi::tbb::parallel_reduce(Range(0, cells, cells_per_task), std::size_t{0}, count, std::plus<>());
-}
-
-// Whether cells at positions a and b stand the wrong way round when the eye is on b's side (+1) or on a's (−1) of their face.
-bool wrong_way_round(std::uint32_t a, std::uint32_t b, int beyond) {
-    return a != absent && b != absent && beyond != 0 && (beyond > 0) != (b > a);
-}
-
 }  // namespace
 
 struct VisibilitySorter::State {
+    State(const TetMesh& mesh, const Adjacency& adjacency)
+        : graph(mesh, adjacency), convex(fills_convex_body(graph)), exact(graph) {}
+
     CellGraph graph;
     bool convex;
+    ExactOrder exact;
     TopologicalSort topological;
     KeySort key_sort;
-    std::optional<bool> delaunay;   // once it was asked for
+    std::optional<bool> delaunay;     // once it was asked for
     std::optional<PowerKeys> powers;  // likewise
-    ExactOrder exact;
     std::vector<std::uint32_t> items;
     std::optional<Eye> last_eye;  // of the last proven order by relations, in convex meshes
     CoherentOrder coherent;
@@ -81,23 +67,20 @@ struct VisibilitySorter::State {
     bool close_to_last(const Eye& eye) const;
     ViewOrder only_visible(const ViewOrder& order, std::span<const std::uint8_t> visible);
     ViewOrder order_exactly(const Eye& eye, const PixelGrid* pixels, OrderReport& report);
+    ViewOrder cut_cycles(const Eye& eye, OrderReport& report);
     std::span<const CellId> in_callers_numbers(std::span<const CellId> places);
     std::span<const CellId> in_place_in_callers_numbers(std::span<CellId> places);
     void renumber(std::span<const CellId> places, std::span<CellId> cells) const;
 };
 
 VisibilitySorter::VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency)
-    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .exact = {}, .items = {}, .last_eye = {}, .coherent = {}, .coherent_fails = false})) {
-    state_->convex = fills_convex_body(state_->graph);
-}
+    : state_(std::make_unique<State>(mesh, adjacency)) {}
 
 VisibilitySorter::~VisibilitySorter() = default;
 VisibilitySorter::VisibilitySorter(VisibilitySorter&&) noexcept = default;
 VisibilitySorter& VisibilitySorter::operator=(VisibilitySorter&&) noexcept = default;
 
 bool VisibilitySorter::convex() const { return state_->convex; }
-const CellGraph& VisibilitySorter::graph() const { return state_->graph; }
-Adjacency VisibilitySorter::adjacency() const { return state_->graph.adjacency(); }
 
 ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::optional<OrderMethod> method,
                                   const PixelGrid* pixels, std::span<const std::uint8_t> visible) {
@@ -117,7 +100,7 @@ ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::opti
                                                              : state_->order_by_relations(eye, found);
     // A convex body with visibility cycles: cut them.
     const bool has_cycles = found.method == OrderMethod::mpvo && state_->convex && cells.size() < state_->graph.size();
-    const ViewOrder order = has_cycles ? state_->order_exactly(eye, nullptr, found) : ViewOrder{cells, {}};
+    const ViewOrder order = has_cycles ? state_->cut_cycles(eye, found) : ViewOrder{cells, {}};
     if (report) *report = found;
     const bool by_keys = found.method == OrderMethod::centroid || found.method == OrderMethod::power;  // which leave out what is not visible
     return by_keys ? order : state_->only_visible(order, visible);
@@ -154,6 +137,11 @@ ViewOrder VisibilitySorter::State::order_exactly(const Eye& eye, const PixelGrid
     last_eye.reset();
     coherent.release();
     return exact.order(graph, topological, eye, pixels, report);
+}
+
+ViewOrder VisibilitySorter::State::cut_cycles(const Eye& eye, OrderReport& report) {
+    free_items();
+    return exact.cut_cycles(graph, topological, eye, report);
 }
 
 bool VisibilitySorter::State::is_delaunay() {
@@ -243,11 +231,21 @@ void VisibilitySorter::State::renumber(std::span<const CellId> places, std::span
 std::size_t VisibilitySorter::count_violations(const ViewOrder& order, const Eye& eye) const {
     const CellGraph& graph = state_->graph;
     const auto position = positions(order, graph.size());
-    return count_faces(graph.size(), [&](CellId place, int face) {
+    const auto wrong_way_round = [&](CellId place, int face) {
         const CellId other = graph.neighbours(place)[static_cast<std::size_t>(face)];
         if (other == graph.nobody() || other < place) return false;
-        return wrong_way_round(position[graph.cell(place)], position[graph.cell(other)], graph.beyond(eye, place, face));
-    });
+        const std::uint32_t here = position[graph.cell(place)], there = position[graph.cell(other)];
+        if (here == absent || there == absent) return false;
+        const int beyond = graph.beyond(eye, place, face);
+        return beyond != 0 && (beyond > 0) != (there > here);
+    };
+    const auto count = [&](const Range& range, std::size_t so_far) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            for (int face = 0; face < 4; ++face) so_far += wrong_way_round(static_cast<CellId>(i), face) ? 1 : 0;
+        }
+        return so_far;
+    };
+    return oneapi::tbb::parallel_reduce(Range(0, graph.size(), cells_per_task), std::size_t{0}, count, std::plus<>());
 }
 
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report) {
@@ -274,17 +272,6 @@ std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport
     }
     if (report) *report = found;
     return cells;
-}
-
-std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye) {
-    const auto position = positions(order, mesh.tets.size());
-    return count_faces(mesh.tets.size(), [&](CellId cell, int face) {
-        const CellId other = adjacency.neighbours[cell][static_cast<std::size_t>(face)];
-        if (other == no_cell || other < cell) return false;
-        const auto v = face_vertices(mesh.tets[cell], face);
-        const int beyond = side_of_plane(eye, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
-        return wrong_way_round(position[cell], position[other], beyond);
-    });
 }
 
 }  // namespace cellproj

@@ -17,10 +17,12 @@
 
 #include "sort/visibility_sorter.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/order_judge.hpp"
 
 namespace cellproj {
 namespace {
 
+using testing_support::count_order_violations;
 using testing_support::delaunay_mesh;
 using testing_support::grid_mesh;
 using testing_support::relabelled;
