@@ -29,9 +29,11 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 // keys grow by the logarithm, up to a factor of 2³².
 constexpr float common_nearness = 4.0F;
 
+constexpr float limit = 1.0F + 32.0F / 256.0F;
+constexpr float scale = static_cast<float>(largest_key) / (2 * limit);
+constexpr float key_width = common_nearness / scale;  // within ±common_nearness
+
 std::uint32_t key_of(float nearness) {
-    constexpr float limit = 1.0F + 32.0F / 256.0F;
-    constexpr float scale = static_cast<float>(largest_key) / (2 * limit);
     const float part = std::abs(nearness) / common_nearness;
     const float height = part <= 1.0F ? part : std::min(1.0F + std::log2(part) / 256.0F, limit);
     return static_cast<std::uint32_t>((std::copysign(height, nearness) + limit) * scale);
@@ -120,11 +122,27 @@ bool PowerKeys::settle(const CellGraph& graph, const Eye& eye, std::span<CellId>
     oneapi::tbb::parallel_for(Range(0, graph.size(), cells_per_task), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) nearness[i] = std::bit_cast<std::uint32_t>(nearness_of(spheres_[i]));
     });
-    // Whether the keys of two cells might stand in another order than their powers. The last term is the rounding of the nearness.
+    const auto is_near = [&](std::size_t place) { return std::bit_cast<float>(nearness[place]); };
+    // Where the powers of two cells stand in the order of their nearness. The last term is the rounding of that.
+    const auto certain = [&](std::size_t a, std::size_t b) {
+        return slacks[slack_[a]] + slacks[slack_[b]] + 0x1.01p-24F * (std::abs(is_near(a)) + std::abs(is_near(b)));
+    };
+    // Whether their keys might stand in another order than their powers.
     const auto doubtful = [&](std::size_t a, std::size_t b) {
-        const auto na = std::bit_cast<float>(nearness[a]), nb = std::bit_cast<float>(nearness[b]);
-        const float certain = slacks[slack_[a]] + slacks[slack_[b]] + 0x1.01p-24F * (std::abs(na) + std::abs(nb));
-        return !(std::abs(na - nb) > certain) || key_of(na) == key_of(nb);
+        return !(std::abs(is_near(a) - is_near(b)) > certain(a, b)) || key_of(is_near(a)) == key_of(is_near(b));
+    };
+    // Nearly all cells are far from doubt. This says so at once, without a choice that depends on the data: within the common nearness a key is
+    // off by less than half its width, so keys of what differs by three of them are not equal. Nobody's number is larger than all.
+    const auto may_be_doubtful = [&](std::size_t place) {
+        const auto last = static_cast<CellId>(graph.size() - 1);
+        bool doubt = !(std::abs(is_near(place)) <= common_nearness);
+        for (const CellId other : graph.neighbours(static_cast<CellId>(place))) {
+            const CellId there = std::min(other, last);
+            const bool is_there = other <= last, is_common = std::abs(is_near(there)) <= common_nearness;
+            const bool is_settled = std::abs(is_near(place) - is_near(there)) > certain(place, there) + 3 * key_width;
+            doubt |= is_there & !(is_settled & is_common);
+        }
+        return doubt;
     };
     struct Pair {
         CellId place;
@@ -134,6 +152,7 @@ bool PowerKeys::settle(const CellGraph& graph, const Eye& eye, std::span<CellId>
     oneapi::tbb::parallel_for(Range(0, graph.size(), cells_per_task), [&](const Range& range) {
         std::vector<Pair>& pairs = found.local();
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            if (!may_be_doubtful(i)) continue;
             for (std::size_t face = 0; face < 4; ++face) {
                 const CellId other = graph.neighbours(static_cast<CellId>(i))[face];
                 if (other == graph.nobody() || other < i || !doubtful(i, other)) continue;
@@ -148,7 +167,9 @@ bool PowerKeys::settle(const CellGraph& graph, const Eye& eye, std::span<CellId>
 
     const std::span<std::uint32_t> position = scratch;
     std::fill(position.begin(), position.end(), no_key);
-    for (std::uint32_t i = 0; i < order.size(); ++i) position[order[i]] = i;
+    oneapi::tbb::parallel_for(Range(0, order.size(), cells_per_task), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) position[order[i]] = static_cast<std::uint32_t>(i);
+    });
     std::vector<OrderArc> wrong;
     for (const auto& pairs : found) {
         for (const auto& [place, face] : pairs) {
