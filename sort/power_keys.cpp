@@ -29,14 +29,14 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 // keys grow by the logarithm, up to a factor of 2³².
 constexpr float common_nearness = 4.0F;
 
-constexpr float limit = 1.0F + 32.0F / 256.0F;
-constexpr float scale = static_cast<float>(largest_key) / (2 * limit);
-constexpr float key_width = common_nearness / scale;  // within ±common_nearness
+constexpr float highest = 1.0F + 32.0F / 256.0F;
+constexpr float key_scale = static_cast<float>(largest_key) / (2 * highest);
+constexpr float key_width = common_nearness / key_scale;  // within ±common_nearness
 
 std::uint32_t key_of(float nearness) {
     const float part = std::abs(nearness) / common_nearness;
-    const float height = part <= 1.0F ? part : std::min(1.0F + std::log2(part) / 256.0F, limit);
-    return static_cast<std::uint32_t>((std::copysign(height, nearness) + limit) * scale);
+    const float height = part <= 1.0F ? part : std::min(1.0F + std::log2(part) / 256.0F, highest);
+    return static_cast<std::uint32_t>((std::copysign(height, nearness) + highest) * key_scale);
 }
 
 // What a cell's slack may be, to spare memory: 2⁻⁴⁰ to 2²³ in steps of a quarter of the power of two below, and infinite.
