@@ -142,6 +142,30 @@ TEST(ExactOrder, ReportsCyclesAndSplitCells) {
     EXPECT_GE(20 * resolve_cycles(twisted_graph, cells, {}, along_z).cyclic_cells, cells.size());  // one in twenty
 }
 
+// A convex mesh needs no relations across the outside; its cycles are cut in every view, also in those that follow the last one.
+TEST(ExactOrder, CyclesOfAConvexMesh) {
+    const TetMesh mesh = twisted_cube(10);
+    VisibilitySorter sorter(mesh);
+    ASSERT_TRUE(sorter.convex());
+    const RayIndex index(mesh);
+    std::mt19937_64 random(7);
+    std::size_t cycles = 0;
+    for (int i = 0; i < eyes; ++i) {
+        PixelGrid grid = pixel_grid(judging_camera(bounds(mesh.points), i, random), picture);
+        for (int step = 0; step < 3; ++step) {
+            OrderReport report;
+            const ViewOrder order = sorter.order(grid.eye, &report);
+            EXPECT_EQ(report.method, OrderMethod::mpvo);
+            EXPECT_TRUE(report.exact) << "eye " << i;
+            EXPECT_TRUE(is_complete(mesh, order)) << "eye " << i;
+            EXPECT_EQ(wrong_rays(mesh, index, order, random_rays(index, grid, rays_per_eye, random)), 0U) << "eye " << i;
+            cycles += report.cycles;
+            grid.eye.xyz += 0.01 * glm::length(grid.eye.xyz) * glm::dvec3(1, 0.5, 0);
+        }
+    }
+    EXPECT_GT(cycles, 0U);
+}
+
 // Pieces in contact whose points were never merged: leaving the one comes before entering the other.
 TEST(ExactOrder, PiecesInContact) {
     TetMesh mesh = grid_mesh(4, 0.0);
