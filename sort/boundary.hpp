@@ -6,16 +6,12 @@
 
 #include <vector>
 
-#include "mesh/tet_mesh.hpp"
+#include "sort/cell_graph.hpp"
 
 namespace cellproj {
 
-// Whether two cells that share a face both have volume and lie on different sides of it, by exact signs. Only then can the plane of
-// the face say which of them hides the other.
-bool separates(const TetMesh& mesh, CellId cell, int face, CellId other);
-
 // The faces of cells with volume that do not separate them from a neighbour: there is none, or it is flat and no obstacle, or it
-// lies on the same side. In cell order. Parallel.
-std::vector<BoundaryFace> order_boundary(const TetMesh& mesh, const Adjacency& adjacency);
+// lies on the same side. In the caller's numbers, in cell order.
+std::vector<BoundaryFace> order_boundary(const CellGraph& graph);
 
 }  // namespace cellproj

@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <tuple>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -52,6 +52,38 @@ std::vector<SeenFace> seen_faces(const TetMesh& mesh, std::span<const BoundaryFa
     return faces;
 }
 
+// ---- Parts of faces ----
+
+// A triangle clipped by up to four planes. Each adds a corner; where rounding makes heights change sign more than twice, half as many as
+// there are: 3, 4, 6, 9, 13.
+class Polygon {
+public:
+    void add(const glm::dvec3& corner) {
+        assert(size_ < corners_.size());
+        corners_[size_++] = corner;
+    }
+    std::size_t size() const { return size_; }
+    const glm::dvec3* begin() const { return corners_.data(); }
+    const glm::dvec3* end() const { return corners_.data() + size_; }
+
+    // What lies where height(point), a linear function, is not negative.
+    template <class Height>
+    Polygon clipped(Height height) const {
+        Polygon rest;
+        for (std::size_t i = 0; i < size_; ++i) {
+            const glm::dvec3 &p = corners_[i], &q = corners_[(i + 1) % size_];
+            const double hp = height(p), hq = height(q);
+            if (hp >= 0) rest.add(p);
+            if ((hp > 0 && hq < 0) || (hp < 0 && hq > 0)) rest.add(p + hp / (hp - hq) * (q - p));
+        }
+        return rest;
+    }
+
+private:
+    std::array<glm::dvec3, 16> corners_;
+    std::size_t size_ = 0;
+};
+
 // ---- Which of two faces is in front ----
 
 // Sides of the plane through the eye and the edge k of a face; inside the face's cone all are negative.
@@ -89,19 +121,13 @@ int side_of_face(const Triangle& a, const Triangle& b) {
 // Where the cones of both overlap, by rounded values: the sign of how much nearer `g` is than `f`; 0 without overlap.
 int nearer_by_rounded_values(const Eye& eye, const Triangle& f, const Triangle& g) {
     // Clip f with the planes through the eye and the edges of g.
-    std::vector<glm::dvec3> part(f.begin(), f.end());
+    Polygon part;
+    for (const glm::dvec3& p : f)
+        part.add(p);
     for (std::size_t k = 0; k < 3; ++k) {
         const glm::dvec3 &a = g[k], &b = g[(k + 1) % 3];
         const glm::dvec3 n = eye.at_infinity ? glm::cross(b - a, eye.xyz) : glm::cross(a - eye.xyz, b - eye.xyz);
-        const auto inside = [&](const glm::dvec3& p) { return glm::dot(n, p - a); };
-        std::vector<glm::dvec3> rest;
-        for (std::size_t i = 0; i < part.size(); ++i) {
-            const glm::dvec3 &p = part[i], &q = part[(i + 1) % part.size()];
-            const double hp = inside(p), hq = inside(q);
-            if (hp >= 0) rest.push_back(p);
-            if ((hp > 0 && hq < 0) || (hp < 0 && hq > 0)) rest.push_back(p + hp / (hp - hq) * (q - p));
-        }
-        part = std::move(rest);
+        part = part.clipped([&](const glm::dvec3& p) { return glm::dot(n, p - a); });
     }
     if (part.size() < 3) return 0;
     glm::dvec3 middle(0);
@@ -178,20 +204,12 @@ Box seen_box(const Eye& eye, const glm::dmat3& to_frame, const Triangle& corners
             box.add(glm::dvec2(to_frame * p));
         return box;
     }
-    std::vector<glm::dvec3> part;
+    Polygon part;
     for (const glm::dvec3& p : corners)
-        part.push_back(to_frame * (p - eye.xyz));
+        part.add(to_frame * (p - eye.xyz));
     for (const glm::dvec3& side : {glm::dvec3(1, 0, 1 + margin), glm::dvec3(-1, 0, 1 + margin), glm::dvec3(0, 1, 1 + margin),
-                                   glm::dvec3(0, -1, 1 + margin)}) {
-        std::vector<glm::dvec3> rest;
-        for (std::size_t i = 0; i < part.size(); ++i) {
-            const glm::dvec3 &p = part[i], &q = part[(i + 1) % part.size()];
-            const double hp = glm::dot(side, p), hq = glm::dot(side, q);
-            if (hp >= 0) rest.push_back(p);
-            if ((hp > 0 && hq < 0) || (hp < 0 && hq > 0)) rest.push_back(p + hp / (hp - hq) * (q - p));
-        }
-        part = std::move(rest);
-    }
+                                   glm::dvec3(0, -1, 1 + margin)})
+        part = part.clipped([&](const glm::dvec3& p) { return glm::dot(side, p); });
     for (const glm::dvec3& p : part) {
         // The apex, where an edge of the face passes by the eye closer than rounding: all directions.
         if (p.z > 0) box.add(glm::clamp(glm::dvec2(p) / p.z, -1.0 - 2 * margin, 1.0 + 2 * margin));
@@ -305,9 +323,8 @@ std::vector<OrderArc> boundary_overlaps(const TetMesh& mesh, std::span<const Bou
     std::vector<OrderArc> arcs;
     for (const auto& some : found)
         arcs.insert(arcs.end(), some.begin(), some.end());
-    const auto key = [](const OrderArc& arc) { return std::tie(arc.behind, arc.front); };
-    std::sort(arcs.begin(), arcs.end(), [&](const OrderArc& a, const OrderArc& b) { return key(a) < key(b); });
-    arcs.erase(std::unique(arcs.begin(), arcs.end(), [&](const OrderArc& a, const OrderArc& b) { return key(a) == key(b); }), arcs.end());
+    std::sort(arcs.begin(), arcs.end());
+    arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
     return arcs;
 }
 

@@ -19,7 +19,7 @@
 
 namespace cellproj {
 
-// `boundary`: order_boundary(mesh). Each arc once, ascending by (behind, front); the same for any number of threads. Time: a grid over
+// `boundary`: order_boundary(graph). Each arc once, ascending by (behind, front); the same for any number of threads. Time: a grid over
 // what is seen, then every pair of faces whose boxes meet there: about linear where few faces lie one behind the other.
 std::vector<OrderArc> boundary_overlaps(const TetMesh& mesh, std::span<const BoundaryFace> boundary, const Eye& eye);
 

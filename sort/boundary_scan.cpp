@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include <glm/geometric.hpp>
 
@@ -219,17 +218,12 @@ public:
             for (std::size_t i = 0; i < width; ++i)
                 relate(row[i], static_cast<int>(i), j);
         }
-        std::sort(arcs.begin(), arcs.end(), precedes);
-        arcs.erase(std::unique(arcs.begin(), arcs.end(), same), arcs.end());
+        std::sort(arcs.begin(), arcs.end());
+        arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
     }
-
-    static bool precedes(const OrderArc& a, const OrderArc& b) {
-        return std::tie(a.behind, a.front) < std::tie(b.behind, b.front);
-    }
-    static bool same(const OrderArc& a, const OrderArc& b) { return a.behind == b.behind && a.front == b.front; }
 
     std::vector<OrderArc> arcs;
-    std::size_t fragments = 0, crossed_rays = 0;
+    std::size_t crossed_rays = 0;
 
 private:
     // Adds the face to the lists of the pixels of row j that it covers.
@@ -280,7 +274,6 @@ private:
 
     // Puts the list of one pixel in order, from back to front, and takes the relations from it.
     void relate(std::vector<Fragment>& list, int i, int j) {
-        fragments += list.size();
         std::sort(list.begin(), list.end(), [](const Fragment& a, const Fragment& b) {
             return a.nearness != b.nearness ? a.nearness < b.nearness : a.face < b.face;
         });
@@ -318,7 +311,7 @@ private:
     // Neighbouring pixels see much the same.
     void add(const OrderArc& arc) {
         for (std::size_t back = 1; back <= std::min<std::size_t>(arcs.size(), 8); ++back) {
-            if (same(arcs[arcs.size() - back], arc)) return;
+            if (arcs[arcs.size() - back] == arc) return;
         }
         arcs.push_back(arc);
     }
@@ -380,11 +373,10 @@ BoundaryScan scan_boundary(const TetMesh& mesh, std::span<const BoundaryFace> bo
     BoundaryScan result;
     for (const BandScan& scan : scans) {
         result.arcs.insert(result.arcs.end(), scan.arcs.begin(), scan.arcs.end());
-        result.fragments += scan.fragments;
         result.crossed_rays += scan.crossed_rays;
     }
-    std::sort(result.arcs.begin(), result.arcs.end(), BandScan::precedes);
-    result.arcs.erase(std::unique(result.arcs.begin(), result.arcs.end(), BandScan::same), result.arcs.end());
+    std::sort(result.arcs.begin(), result.arcs.end());
+    result.arcs.erase(std::unique(result.arcs.begin(), result.arcs.end()), result.arcs.end());
     return result;
 }
 

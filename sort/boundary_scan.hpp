@@ -24,11 +24,10 @@ namespace cellproj {
 
 struct BoundaryScan {
     std::vector<OrderArc> arcs;    // each once, ascending by (behind, front)
-    std::size_t fragments = 0;     // faces at pixels
     std::size_t crossed_rays = 0;  // pixels whose ray does not enter and leave in turn: cells overlap there
 };
 
-// `boundary`: order_boundary(mesh). Inverted cells count as what they cover. In perspective, what lies behind the eye is not seen.
+// `boundary`: order_boundary(graph). Inverted cells count as what they cover. In perspective, what lies behind the eye is not seen.
 // The same for any number of threads.
 BoundaryScan scan_boundary(const TetMesh& mesh, std::span<const BoundaryFace> boundary, const PixelGrid& pixels);
 

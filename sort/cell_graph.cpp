@@ -55,6 +55,18 @@ bool coherent(const Adjacency& adjacency) {
     return distance <= 2.0 * faces * std::pow(static_cast<double>(adjacency.neighbours.size()), 2.0 / 3.0);
 }
 
+// Whether the vertices of a cell are near each other among the points: then they need no numbers of their own. The bound is that of
+// coherent() above.
+bool points_are_coherent(const TetMesh& mesh) {
+    if (mesh.points.size() > mesh.tets.size()) return false;  // most of them may belong to no cell
+    double distance = 0.0;
+    for (const auto& tet : mesh.tets) {
+        const auto [low, high] = std::minmax({tet[0], tet[1], tet[2], tet[3]});
+        distance += static_cast<double>(high - low);
+    }
+    return distance <= 2.0 * static_cast<double>(mesh.tets.size()) * std::pow(static_cast<double>(mesh.points.size()), 2.0 / 3.0);
+}
+
 std::vector<CellId> morton_order(const TetMesh& mesh) {
     struct Key {
         std::uint64_t code;
@@ -123,10 +135,7 @@ void CellGraph::number_cells(const Adjacency& adjacency) {
     const std::size_t count = mesh_.tets.size();
     keeps_order_ = coherent(adjacency);
     std::vector<CellId> place;
-    if (keeps_order_) {
-        cells_.resize(count);
-        for (std::size_t i = 0; i < count; ++i) cells_[i] = static_cast<CellId>(i);
-    } else {
+    if (!keeps_order_) {
         cells_ = morton_order(mesh_);
         place.resize(count);
         oneapi::tbb::parallel_for(Range(0, count, cells_per_task), [&](const Range& range) {
@@ -137,7 +146,7 @@ void CellGraph::number_cells(const Adjacency& adjacency) {
     oneapi::tbb::parallel_for(Range(0, count, cells_per_task), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             for (std::size_t face = 0; face < 4; ++face) {
-                const CellId other = adjacency.neighbours[cells_[i]][face];
+                const CellId other = adjacency.neighbours[cell(static_cast<CellId>(i))][face];
                 neighbours_[i][face] = other == no_cell ? static_cast<CellId>(count) : keeps_order_ ? other : place[other];
             }
         }
@@ -145,18 +154,23 @@ void CellGraph::number_cells(const Adjacency& adjacency) {
 }
 
 void CellGraph::number_points() {
-    corners_.resize(size());
+    const auto in_floats = [&](VertexId vertex) { return glm::vec4(glm::vec3((mesh_.points[vertex] - center_) * scale_), 0.0F); };
+    if (keeps_order_ && points_are_coherent(mesh_)) {
+        points_.resize(mesh_.points.size());
+        for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = in_floats(static_cast<VertexId>(i));
+        return;
+    }
+    own_corners_.resize(size());
     std::vector<std::uint32_t> number(mesh_.points.size(), no_point);
     for (std::size_t i = 0; i < size(); ++i) {
-        const auto& tet = mesh_.tets[cells_[i]];
+        const auto& tet = mesh_.tets[cell(static_cast<CellId>(i))];
         for (std::size_t corner = 0; corner < 4; ++corner) {
             std::uint32_t& n = number[tet[corner]];
             if (n == no_point) {
                 n = static_cast<std::uint32_t>(points_.size());
-                const glm::vec3 p((mesh_.points[tet[corner]] - center_) * scale_);
-                points_.push_back({p.x, p.y, p.z, tet[corner]});
+                points_.push_back(in_floats(tet[corner]));
             }
-            corners_[i][corner] = n;
+            own_corners_[i][corner] = n;
         }
     }
     points_.shrink_to_fit();
@@ -167,14 +181,17 @@ void CellGraph::number_points() {
 void CellGraph::find_sides() {
     std::vector<std::int8_t> orientations(size());
     faces_.resize(size());
+    const auto* const corners = this->corners();
     oneapi::tbb::parallel_for(Range(0, size(), cells_per_task), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const auto& t = mesh_.tets[cells_[i]];
+            const auto& t = mesh_.tets[cell(static_cast<CellId>(i))];
             const auto& p = mesh_.points;
             orientations[i] = static_cast<std::int8_t>(orientation(p[t[0]], p[t[1]], p[t[2]], p[t[3]]));
         }
     });
-    flat_cells_ = static_cast<std::size_t>(std::count(orientations.begin(), orientations.end(), std::int8_t{0}));
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (orientations[i] == 0) flat_.push_back(static_cast<CellId>(i));
+    }
 
     std::vector<std::uint8_t> folded(size());  // a bit per face
     oneapi::tbb::parallel_for(Range(0, size(), cells_per_task), [&](const Range& range) {
@@ -186,14 +203,14 @@ void CellGraph::find_sides() {
                 const CellId other = neighbours_[i][static_cast<std::size_t>(face)];
                 if (other == nobody()) continue;
                 inner |= 1U << face;
-                const auto mine = face_vertices(corners_[i], face);
-                const int back = face_towards(neighbours_[other], place, corners_[other], mine);
+                const auto mine = face_vertices(corners[i], face);
+                const int back = face_towards(neighbours_[other], place, corners[other], mine);
                 if (back == 4) {  // no face of theirs: no relation
                     folded[i] |= static_cast<std::uint8_t>(1U << face);
                     continue;
                 }
                 const int others = orientations[other];
-                const bool opposite = turn_oppositely(mine, face_vertices(corners_[other], back));
+                const bool opposite = turn_oppositely(mine, face_vertices(corners[other], back));
                 if (own != 0 && others != 0 && opposite != (own == others)) folded[i] |= static_cast<std::uint8_t>(1U << face);
                 if (own == 0 && others != 0 && opposite != (others > 0)) outside |= 1U << face;
                 // Between two flat cells any rule will do that both follow.
@@ -215,27 +232,25 @@ void CellGraph::find_sides() {
 }
 
 int CellGraph::beyond(const Eye& eye, CellId place, int face) const {
-    const auto v = face_vertices(corners_[place], face);
+    const auto v = face_vertices(mesh_.tets[cell(place)], face);
     const auto& p = mesh_.points;
-    const int side = side_of_plane(eye, p[points_[v[0]].vertex], p[points_[v[1]].vertex], p[points_[v[2]].vertex]);
+    const int side = side_of_plane(eye, p[v[0]], p[v[1]], p[v[2]]);
     return (faces_[place] >> face & 1) != 0 ? -side : side;
 }
 
-Adjacency CellGraph::adjacency() const {
-    Adjacency adjacency;
-    adjacency.neighbours.resize(size());
-    for (std::size_t i = 0; i < size(); ++i) {
-        for (std::size_t face = 0; face < 4; ++face) {
-            const CellId other = neighbours_[i][face];
-            adjacency.neighbours[cells_[i]][face] = other == nobody() ? no_cell : cells_[other];
-        }
-    }
-    return adjacency;
-}
+bool CellGraph::is_flat(CellId place) const { return std::binary_search(flat_.begin(), flat_.end(), place); }
 
 glm::dvec3 CellGraph::scaled(const Eye& eye) const {
     if (!eye.at_infinity) return (eye.xyz - center_) * scale_;
     return eye.xyz / std::max({std::abs(eye.xyz.x), std::abs(eye.xyz.y), std::abs(eye.xyz.z)});
+}
+
+void CellGraph::find_centroids(CellId first, std::span<glm::vec4> centroids) const {
+    const auto* const corner = corners() + first;
+    const glm::vec4* const points = points_.data();
+    for (std::size_t k = 0; k < centroids.size(); ++k) {
+        centroids[k] = 0.25F * (points[corner[k][0]] + points[corner[k][1]] + points[corner[k][2]] + points[corner[k][3]]);
+    }
 }
 
 CellGraph::View CellGraph::view_from(const Eye& eye) const {
@@ -293,10 +308,11 @@ void CellGraph::relate(const View& view, std::size_t count, PlaceOf place_of, Ta
     [[maybe_unused]] float reach[n];
     [[maybe_unused]] constexpr std::size_t ahead = 16;  // cells, about the time that memory takes to answer
     const float origin = view.at_infinity ? 0.0F : 1.0F;
+    const auto* const corners = this->corners();
     for (std::size_t k = 0; k < count; ++k) {
-        const auto& corner = corners_[place_of(k)];
-        if constexpr (with_reach) __builtin_prefetch(&corners_[place_of(std::min(k + ahead, count - 1))]);
-        const Point a = points_[corner[0]], b = points_[corner[1]], c = points_[corner[2]], d = points_[corner[3]];
+        const auto& corner = corners[place_of(k)];
+        if constexpr (with_reach) __builtin_prefetch(&corners[place_of(std::min(k + ahead, count - 1))]);
+        const glm::vec4 &a = points_[corner[0]], &b = points_[corner[1]], &c = points_[corner[2]], &d = points_[corner[3]];
         ux[k] = b.x - a.x, uy[k] = b.y - a.y, uz[k] = b.z - a.z;
         vx[k] = c.x - a.x, vy[k] = c.y - a.y, vz[k] = c.z - a.z;
         wx[k] = d.x - a.x, wy[k] = d.y - a.y, wz[k] = d.z - a.z;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include "mesh/predicates.hpp"
 #include "mesh/tet_mesh.hpp"
@@ -18,7 +19,8 @@
 namespace cellproj {
 
 // Cells have *places*, 0 .. #T−1: the caller's order where that is coherent, Morton order where it is not. Place #T is nobody's.
-// The mesh must outlive the graph and stay unchanged. Memory: 38 bytes per cell and 20 per point.
+// The mesh must outlive the graph and stay unchanged. Memory: 17 bytes per cell and 16 per point that is used; 20 more per cell in Morton
+// order, 16 more where points stand in no order.
 class CellGraph {
 public:
     // The adjacency must be of this mesh.
@@ -39,43 +41,32 @@ public:
     const TetMesh& mesh() const { return mesh_; }
     std::size_t size() const { return neighbours_.size(); }
     CellId nobody() const { return static_cast<CellId>(size()); }
-    CellId cell(CellId place) const { return cells_[place]; }            // as the caller numbers it
-    const std::vector<CellId>& cells() const { return cells_; }          // by place
+    CellId cell(CellId place) const { return keeps_order_ ? place : cells_[place]; }  // as the caller numbers it
+    const std::vector<CellId>& cells() const { return cells_; }          // by place; empty where the order is kept
     bool keeps_order() const { return keeps_order_; }                    // of the caller: places are his numbers
     const std::array<CellId, 4>& neighbours(CellId place) const { return neighbours_[place]; }  // places; nobody() where there is none
     const std::vector<std::array<CellId, 4>>& neighbours() const { return neighbours_; }
     bool on_boundary(CellId place) const { return (faces_[place] >> 4) != 0x0f; }
     // Faces whose two cells lie on the same side: the mesh overlaps itself there, and they tell no order.
     std::size_t folded_faces() const { return folded_faces_; }
-    // Cells without volume.
-    std::size_t flat_cells() const { return flat_cells_; }
+    std::size_t flat_cells() const { return flat_.size(); }
+    bool is_flat(CellId place) const;  // without volume
 
-    // An eye, or the direction to it, and a cell's centroid in the graph's own coordinates, in which points lie within ±1. A direction's
-    // largest coordinate is 1.
+    // An eye, or the direction to it, in the graph's own coordinates, in which points lie within ±1. A direction's largest coordinate is 1.
     glm::dvec3 scaled(const Eye& eye) const;
-    glm::vec3 float_centroid(CellId place) const {
-        glm::vec3 sum(0.0F);
-        for (const std::uint32_t corner : corners_[place]) {
-            const Point& p = points_[corner];
-            sum += glm::vec3(p.x, p.y, p.z);
-        }
-        return 0.25F * sum;
-    }
+    // The centroids of the cells at first, first + 1, … in these coordinates; the last component is 0.
+    void find_centroids(CellId first, std::span<glm::vec4> centroids) const;
 
     // Where the eye lies with respect to face i: +1 on the neighbour's side, −1 on the cell's, 0 in its plane. Exact.
     int beyond(const Eye& eye, CellId place, int face) const;
-    // The adjacency in the caller's numbers, without folded faces.
-    Adjacency adjacency() const;
 
 private:
-    struct Point {
-        float x, y, z;
-        VertexId vertex;
-    };
     struct View;
 
     void number_cells(const Adjacency& adjacency);
     void number_points();
+    // #T by 4, into points_.
+    const std::array<std::uint32_t, 4>* corners() const { return own_corners_.empty() ? mesh_.tets.data() : own_corners_.data(); }
     void find_sides();
     Relations relations_at(const View& view, std::size_t place, unsigned positive, unsigned negative) const;
     View view_from(const Eye& eye) const;
@@ -86,14 +77,15 @@ private:
     glm::dvec3 center_{0.0};
     double scale_ = 1.0;  // a power of two; points are (p − center)·scale, within ±1
     bool keeps_order_ = false;
-    std::vector<CellId> cells_;                         // #T: the cell at a place
-    std::vector<std::array<CellId, 4>> neighbours_;     // #T by 4: places
-    std::vector<std::array<std::uint32_t, 4>> corners_;  // #T by 4, into points_
-    std::vector<Point> points_;                         // by first use
+    std::vector<CellId> cells_;                      // #T: the cell at a place; empty where the order is kept
+    std::vector<std::array<CellId, 4>> neighbours_;  // #T by 4: places
+    std::vector<std::array<std::uint32_t, 4>> own_corners_;  // #T by 4, into points_; empty where they are those of the mesh
+    std::vector<glm::vec4> points_;                  // xyz: float32; the mesh's, or those that are used, by first use
     // #T: bits 0–3: the cell lies on the outer side of its face i (it is inverted, or flat and its neighbour says so); bits 4–7: there
     // is a neighbour.
     std::vector<std::uint8_t> faces_;
-    std::size_t folded_faces_ = 0, flat_cells_ = 0;
+    std::size_t folded_faces_ = 0;
+    std::vector<CellId> flat_;  // places, ascending
 };
 
 }  // namespace cellproj

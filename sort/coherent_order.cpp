@@ -78,12 +78,6 @@ std::size_t first_at_least(const std::vector<std::uint32_t>& ascending, std::siz
     return static_cast<std::size_t>(std::lower_bound(first, last, value) - ascending.begin());
 }
 
-void spread_keys(std::vector<std::uint32_t>& keys) {
-    oneapi::tbb::parallel_for(Range(0, keys.size(), 4096), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) keys[i] <<= spacing_bits;
-    });
-}
-
 }  // namespace
 
 bool CoherentOrder::start(const CellGraph& graph, const Eye& eye) {
@@ -114,14 +108,17 @@ bool CoherentOrder::follow(const CellGraph& graph, const Eye& eye) {
 
 void CoherentOrder::label_by_depth(const CellGraph& graph, const Eye& eye) {
     for (auto* last : {&label_, &cells_, &sorted_labels_}) std::vector<std::uint32_t>().swap(*last);  // frees; `= {}` would not
+    const FindKeys find_keys = centroid_keys(graph, eye, {});
     {
         KeySort keys;
-        find_centroid_keys(graph, eye, {}, keys.keys(graph.size()));
-        keys.sort();
-        label_ = keys.take_keys();
+        keys.sort(graph.size(), find_keys);
         cells_ = keys.take_sorted();
     }
-    spread_keys(label_);
+    label_.resize(graph.size());
+    oneapi::tbb::parallel_for(Range(0, graph.size(), 4096), [&](const Range& range) {
+        find_keys(range.begin(), std::span(label_).subspan(range.begin(), range.size()));
+        for (std::size_t i = range.begin(); i != range.end(); ++i) label_[i] <<= spacing_bits;
+    });
     sorted_labels_.resize(graph.size());
     oneapi::tbb::parallel_for(Range(0, graph.size(), 4096), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {

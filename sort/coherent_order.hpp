@@ -20,7 +20,7 @@
 
 namespace cellproj {
 
-// Memory: 15 bytes per cell, at times 19.
+// Memory: 15 bytes per cell.
 class CoherentOrder {
 public:
     // Orders all cells for an eye, from scratch. False, and empty, when labels do not get there within a bounded time: there is a cycle, or depth

@@ -94,9 +94,9 @@ struct Part {
 
 class Resolver {
 public:
-    Resolver(const TetMesh& mesh, std::vector<CellId> cells, const ArcRows& relations, const Eye& eye, ResolvedCycles& result)
-        : mesh_(mesh), cells_(std::move(cells)), relations_(relations), eye_(eye), result_(result), slot_(cells_.size(), none),
-          is_split_(cells_.size(), false) {}
+    Resolver(const TetMesh& mesh, std::vector<CellId> cells, const ArcRows& relations, const Eye& eye, CutLimit limit, ResolvedCycles& result)
+        : mesh_(mesh), cells_(std::move(cells)), relations_(relations), eye_(eye), limit_(limit), result_(result), slot_(cells_.size(), none),
+          is_split_(cells_.size(), false), is_unordered_(cells_.size(), false) {}
 
     // Puts the cells of one component into the order.
     void resolve(std::span<const std::uint32_t> component) {
@@ -109,7 +109,7 @@ public:
         }
         ++result_.cycles;
         result_.cyclic_cells += component.size();
-        std::size_t room = (cycle_growth - 1) * component.size() + 64;  // how many cuts are left
+        std::size_t room = (limit_.per_cell - 1) * component.size() + limit_.spare;  // how many cuts are left
         std::vector<Part> all;
         for (const std::uint32_t node : component)
             all.push_back({node, true, {}});
@@ -291,7 +291,10 @@ private:
         std::sort(by_depth.begin(), by_depth.end());
         for (const auto& [depth, i] : by_depth) {
             emit(parts[i]);
-            result_.unordered += has_volume(parts[i].node) ? 1 : 0;
+            const std::uint32_t node = parts[i].node;
+            if (is_unordered_[node] || !has_volume(node)) continue;
+            is_unordered_[node] = true;
+            ++result_.unordered;
         }
     }
 
@@ -299,15 +302,16 @@ private:
     std::vector<CellId> cells_;  // #nodes
     const ArcRows& relations_;
     const Eye& eye_;
+    CutLimit limit_;
     ResolvedCycles& result_;
     std::vector<std::uint32_t> slot_;  // #nodes: where a node stands among the parts at hand, or none
-    std::vector<bool> is_split_;       // #nodes
+    std::vector<bool> is_split_, is_unordered_;  // #nodes
 };
 
 }  // namespace
 
-ResolvedCycles resolve_cycles(const CellGraph& graph, std::span<const CellId> places, std::span<const OrderArc> arcs,
-                              const Eye& eye) {
+ResolvedCycles resolve_cycles(const CellGraph& graph, std::span<const CellId> places, std::span<const OrderArc> arcs, const Eye& eye,
+                              CutLimit limit) {
     const ArcRows relations = relations_among(graph, places, arcs, eye);
     const Components components = strong_components(relations);
     std::vector<CellId> cells;
@@ -316,7 +320,7 @@ ResolvedCycles resolve_cycles(const CellGraph& graph, std::span<const CellId> pl
         cells.push_back(graph.cell(place));
     ResolvedCycles result;
     result.items.reserve(places.size());
-    Resolver resolver(graph.mesh(), std::move(cells), relations, eye, result);
+    Resolver resolver(graph.mesh(), std::move(cells), relations, eye, limit, result);
     for (std::size_t k = 0; k < components.size(); ++k)
         resolver.resolve(components[k]);
     return result;

@@ -23,13 +23,15 @@
 
 namespace cellproj {
 
-// A component of n cells is cut into no more than growth·n + 64 parts; beyond that what is left of it is ordered by depth.
-inline constexpr std::size_t cycle_growth = 4;
+// A component of n cells is cut into no more than per_cell·n + spare parts; what is left of it then is ordered by depth.
+struct CutLimit {
+    std::size_t per_cell = 4, spare = 64;
+};
 
 struct ResolvedCycles {
     std::vector<std::uint32_t> items;  // from back to front: a cell, or #T + i for pieces[i]
     std::vector<CellPiece> pieces;
-    std::size_t unordered = 0;    // parts ordered by depth
+    std::size_t unordered = 0;    // cells of which some part was ordered by depth
     std::size_t cycles = 0;       // components of more than one cell with volume
     std::size_t cyclic_cells = 0;  // cells in these
     std::size_t split_cells = 0;  // cells that became pieces
@@ -38,7 +40,7 @@ struct ResolvedCycles {
 // Orders the cells at `places`, by the relations among them: faces that they share, by exact signs, and `arcs` (between places too);
 // arcs to other places are passed over. Where cells overlap there is no order: nothing fails, some cell comes first. A place stands
 // once in `places`; the answer is in the mesh's own numbers.
-ResolvedCycles resolve_cycles(const CellGraph& graph, std::span<const CellId> places, std::span<const OrderArc> arcs,
-                              const Eye& eye);
+ResolvedCycles resolve_cycles(const CellGraph& graph, std::span<const CellId> places, std::span<const OrderArc> arcs, const Eye& eye,
+                              CutLimit limit = {});
 
 }  // namespace cellproj

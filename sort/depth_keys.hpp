@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,35 +18,34 @@ inline constexpr int key_bits = 22;
 inline constexpr std::uint32_t largest_key = (1U << key_bits) - 1;
 inline constexpr std::uint32_t no_key = 0xffffffffU;  // leave the element out
 
-// Sorts by key and keeps its memory from view to view until it is released: 16 bytes per element.
+// Finds the keys of the elements first, first + 1, …; called for runs of them, from many threads.
+using FindKeys = std::function<void(std::size_t first, std::span<std::uint32_t> keys)>;
+
+// Keeps its memory from view to view until it is released: 8 bytes per element.
 class KeySort {
 public:
-    // Where the caller puts the keys: one per element.
-    std::span<std::uint32_t> keys(std::size_t count) {
-        keys_.resize(count);
-        return keys_;
-    }
-    // The numbers of the elements whose key is not `no_key`, by ascending key; equal ones by number. The same for any number of threads.
-    // `names`: what to write instead of the numbers, one per element.
-    std::span<std::uint32_t> sort(std::span<const std::uint32_t> names = {});
+    // The numbers of those elements of 0, 1, …, count − 1 whose key is not `no_key`, by ascending key; equal ones by number. The same for any
+    // number of threads.
+    std::span<std::uint32_t> sort(std::size_t count, const FindKeys& find_keys);
     // The last result again.
-    std::span<std::uint32_t> sorted() { return sorted_; }
-    // The keys and the last result, for good.
-    std::vector<std::uint32_t> take_keys() { return std::move(keys_); }
-    std::vector<std::uint32_t> take_sorted() { return std::move(sorted_); }
+    std::span<std::uint32_t> sorted() { return std::span(keys_).first(sorted_); }
+    // Room for a number per element, of use to anybody until the next sort.
+    std::span<std::uint32_t> scratch() { return entries_; }
+    // The last result, for good; all elements had a key.
+    std::vector<std::uint32_t> take_sorted() { return std::move(keys_); }
     void release() { *this = {}; }
 
 private:
-    struct Entry {
-        std::uint32_t key, element;
-    };
-    std::vector<std::uint32_t> keys_, sorted_;
-    std::vector<Entry> entries_;
+    std::vector<std::uint32_t> keys_;     // #elements; from the second pass on, the result
+    std::vector<std::uint32_t> entries_;  // #elements, in the order of the first pass
+    std::size_t sorted_ = 0;              // how many
 };
 
 // Keys that grow from far to near, by the distance of the centroids from the eye, linear over the mesh's box; `no_key` for cells (in the
-// caller's numbers) that are not visible. `visible` is #T or empty.
-void find_centroid_keys(const CellGraph& graph, const Eye& eye, std::span<const std::uint8_t> visible,
-                        std::span<std::uint32_t> keys);
+// caller's numbers) that are not visible. `visible` is #T or empty. What is given must outlive the answer.
+FindKeys centroid_keys(const CellGraph& graph, const Eye& eye, std::span<const std::uint8_t> visible);
+
+// After `keys` of the cells at first, first + 1, …: those that are not visible have none.
+void leave_out(const CellGraph& graph, std::span<const std::uint8_t> visible, std::size_t first, std::span<std::uint32_t> keys);
 
 }  // namespace cellproj

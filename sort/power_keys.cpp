@@ -6,12 +6,13 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include <glm/geometric.hpp>
 
-#include "sort/depth_keys.hpp"
 #include "sort/order_repair.hpp"
 
 namespace cellproj {
@@ -28,12 +29,27 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 // keys grow by the logarithm, up to a factor of 2³².
 constexpr float common_nearness = 4.0F;
 
+constexpr float highest = 1.0F + 32.0F / 256.0F;
+constexpr float key_scale = static_cast<float>(largest_key) / (2 * highest);
+constexpr float key_width = common_nearness / key_scale;  // within ±common_nearness
+
 std::uint32_t key_of(float nearness) {
-    constexpr float limit = 1.0F + 32.0F / 256.0F;
-    constexpr float scale = static_cast<float>(largest_key) / (2 * limit);
     const float part = std::abs(nearness) / common_nearness;
-    const float height = part <= 1.0F ? part : std::min(1.0F + std::log2(part) / 256.0F, limit);
-    return static_cast<std::uint32_t>((std::copysign(height, nearness) + limit) * scale);
+    const float height = part <= 1.0F ? part : std::min(1.0F + std::log2(part) / 256.0F, highest);
+    return static_cast<std::uint32_t>((std::copysign(height, nearness) + highest) * key_scale);
+}
+
+// What a cell's slack may be, to spare memory: 2⁻⁴⁰ to 2²³ in steps of a quarter of the power of two below, and infinite.
+const std::array<float, 256> slacks = [] {
+    std::array<float, 256> values;
+    for (int i = 0; i < 255; ++i) values[static_cast<std::size_t>(i)] = std::ldexp(1.0F + 0.25F * static_cast<float>(i % 4), i / 4 - 40);
+    values.back() = infinity;
+    return values;
+}();
+
+std::uint8_t slack_at_least(double slack) {
+    const auto above = std::partition_point(slacks.begin(), slacks.end() - 1, [&](float value) { return !(value >= slack); });
+    return static_cast<std::uint8_t>(above - slacks.begin());
 }
 
 double largest_coordinate(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
@@ -58,7 +74,7 @@ PowerKeys::PowerKeys(const CellGraph& graph) : spheres_(graph.size()), slack_(gr
             const double n_error = 18 * l * l * l * (16 + 20 * l) * half_ulp, d_error = 6 * l * l * (12 + 8 * l) * half_ulp;
             if (!(std::abs(d) > 2 * d_error)) {
                 spheres_[i] = {};
-                slack_[i] = infinity;
+                slack_[i] = slack_at_least(infinity);
                 continue;
             }
             const glm::dvec3 from_a = n / (2 * d), center = a + from_a;
@@ -69,35 +85,65 @@ PowerKeys::PowerKeys(const CellGraph& graph) : spheres_(graph.size()), slack_(gr
             spheres_[i] = {static_cast<float>(center.x), static_cast<float>(center.y), static_cast<float>(center.z),
                            static_cast<float>(power)};
             const double rounding = half_ulp_float * (6 * largest_coordinate(center) + std::abs(power));
-            slack_[i] = static_cast<float>(1.001 * (6 * center_error + power_error + rounding));
+            slack_[i] = slack_at_least(1.001 * (6 * center_error + power_error + rounding));
         }
     });
 }
 
-void PowerKeys::find(const CellGraph& graph, const Eye& eye, std::span<const std::uint8_t> visible, std::span<std::uint32_t> keys) {
-    nearness_.resize(graph.size());
-    const glm::dvec3 e = graph.scaled(eye);
-    const double size = std::max(1.0, glm::length(e));
-    const glm::dvec3 towards = (eye.at_infinity ? 1.0 : 2.0) * (e / size);
-    const double own = eye.at_infinity ? 0.0 : 1.0 / size;
+// The nearness of the spheres to an eye.
+class PowerKeys::View {
+public:
+    View(const CellGraph& graph, const Eye& eye) {
+        const glm::dvec3 e = graph.scaled(eye);
+        const double size = std::max(1.0, glm::length(e));
+        towards_ = (eye.at_infinity ? 1.0 : 2.0) * (e / size);
+        own_ = eye.at_infinity ? 0.0 : 1.0 / size;
+    }
+
+    float operator()(const Sphere& s) const {
+        return static_cast<float>(towards_.x * s.x + towards_.y * s.y + towards_.z * s.z - own_ * s.power);
+    }
+
+private:
+    glm::dvec3 towards_;
+    double own_;
+};
+
+FindKeys PowerKeys::keys(const CellGraph& graph, const Eye& eye, std::span<const std::uint8_t> visible) const {
+    return [&graph, nearness = View(graph, eye), visible, spheres = spheres_.data()](std::size_t first, std::span<std::uint32_t> keys) {
+        for (std::size_t k = 0; k < keys.size(); ++k) keys[k] = key_of(nearness(spheres[first + k]));
+        leave_out(graph, visible, first, keys);
+    };
+}
+
+bool PowerKeys::settle(const CellGraph& graph, const Eye& eye, std::span<CellId> order, std::span<std::uint32_t> scratch) const {
+    const std::span<std::uint32_t> nearness = scratch;  // as bits of float32; when these are done, positions
+    const View nearness_of(graph, eye);
     oneapi::tbb::parallel_for(Range(0, graph.size(), cells_per_task), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const Sphere& s = spheres_[i];
-            const double nearness = towards.x * s.x + towards.y * s.y + towards.z * s.z - own * s.power;
-            nearness_[i] = static_cast<float>(nearness);
-            keys[i] = visible.empty() || visible[graph.cell(static_cast<CellId>(i))] != 0 ? key_of(nearness_[i]) : no_key;
-        }
+        for (std::size_t i = range.begin(); i != range.end(); ++i) nearness[i] = std::bit_cast<std::uint32_t>(nearness_of(spheres_[i]));
     });
-}
-
-// Whether the keys of two cells might stand in another order than their powers. The last term is the rounding of the nearness.
-bool PowerKeys::doubtful(std::size_t a, std::size_t b) const {
-    const float na = nearness_[a], nb = nearness_[b];
-    const float certain = slack_[a] + slack_[b] + 0x1.01p-24F * (std::abs(na) + std::abs(nb));
-    return !(std::abs(na - nb) > certain) || key_of(na) == key_of(nb);
-}
-
-bool PowerKeys::settle(const CellGraph& graph, const Eye& eye, std::span<CellId> order) {
+    const auto is_near = [&](std::size_t place) { return std::bit_cast<float>(nearness[place]); };
+    // Where the powers of two cells stand in the order of their nearness. The last term is the rounding of that.
+    const auto certain = [&](std::size_t a, std::size_t b) {
+        return slacks[slack_[a]] + slacks[slack_[b]] + 0x1.01p-24F * (std::abs(is_near(a)) + std::abs(is_near(b)));
+    };
+    // Whether their keys might stand in another order than their powers.
+    const auto doubtful = [&](std::size_t a, std::size_t b) {
+        return !(std::abs(is_near(a) - is_near(b)) > certain(a, b)) || key_of(is_near(a)) == key_of(is_near(b));
+    };
+    // Nearly all cells are far from doubt. This says so at once, without a choice that depends on the data: within the common nearness a key is
+    // off by less than half its width, so keys of what differs by three of them are not equal. Nobody's number is larger than all.
+    const auto may_be_doubtful = [&](std::size_t place) {
+        const auto last = static_cast<CellId>(graph.size() - 1);
+        bool doubt = !(std::abs(is_near(place)) <= common_nearness);
+        for (const CellId other : graph.neighbours(static_cast<CellId>(place))) {
+            const CellId there = std::min(other, last);
+            const bool is_there = other <= last, is_common = std::abs(is_near(there)) <= common_nearness;
+            const bool is_settled = std::abs(is_near(place) - is_near(there)) > certain(place, there) + 3 * key_width;
+            doubt |= is_there & !(is_settled & is_common);
+        }
+        return doubt;
+    };
     struct Pair {
         CellId place;
         int face;
@@ -106,6 +152,7 @@ bool PowerKeys::settle(const CellGraph& graph, const Eye& eye, std::span<CellId>
     oneapi::tbb::parallel_for(Range(0, graph.size(), cells_per_task), [&](const Range& range) {
         std::vector<Pair>& pairs = found.local();
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            if (!may_be_doubtful(i)) continue;
             for (std::size_t face = 0; face < 4; ++face) {
                 const CellId other = graph.neighbours(static_cast<CellId>(i))[face];
                 if (other == graph.nobody() || other < i || !doubtful(i, other)) continue;
@@ -118,21 +165,24 @@ bool PowerKeys::settle(const CellGraph& graph, const Eye& eye, std::span<CellId>
     if (doubts == 0) return true;
     if (doubts > graph.size() / 64 + 64) return false;
 
-    position_.assign(graph.size(), no_key);
-    for (std::uint32_t i = 0; i < order.size(); ++i) position_[order[i]] = i;
+    const std::span<std::uint32_t> position = scratch;
+    std::fill(position.begin(), position.end(), no_key);
+    oneapi::tbb::parallel_for(Range(0, order.size(), cells_per_task), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) position[order[i]] = static_cast<std::uint32_t>(i);
+    });
     std::vector<OrderArc> wrong;
     for (const auto& pairs : found) {
         for (const auto& [place, face] : pairs) {
             const CellId other = graph.neighbours(place)[static_cast<std::size_t>(face)];
-            if (position_[place] == no_key && position_[other] == no_key) continue;
+            if (position[place] == no_key && position[other] == no_key) continue;
             const int beyond = graph.beyond(eye, place, face);
             if (beyond == 0) continue;
-            if (position_[place] == no_key || position_[other] == no_key) return false;
+            if (position[place] == no_key || position[other] == no_key) return false;
             const OrderArc arc = beyond > 0 ? OrderArc{place, other} : OrderArc{other, place};
-            if (position_[arc.front] < position_[arc.behind]) wrong.push_back(arc);
+            if (position[arc.front] < position[arc.behind]) wrong.push_back(arc);
         }
     }
-    return repair_order(graph, eye, wrong, order, position_);
+    return repair_order(graph, eye, wrong, order, position);
 }
 
 }  // namespace cellproj

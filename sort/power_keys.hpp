@@ -12,32 +12,31 @@
 #include <vector>
 
 #include "sort/cell_graph.hpp"
+#include "sort/depth_keys.hpp"
 
 namespace cellproj {
 
-// Memory: 20 bytes per cell, 8 more once keys were found.
+// Memory: 17 bytes per cell.
 class PowerKeys {
 public:
     explicit PowerKeys(const CellGraph& graph);
 
-    // Keys that grow from far to near; `no_key` for cells that are not visible.
-    void find(const CellGraph& graph, const Eye& eye, std::span<const std::uint8_t> visible, std::span<std::uint32_t> keys);
+    // Keys that grow from far to near; `no_key` for cells that are not visible. What is given must outlive the answer, as must this.
+    FindKeys keys(const CellGraph& graph, const Eye& eye, std::span<const std::uint8_t> visible) const;
 
-    // After `find` and sorting: makes `order` (places, back to front) respect the relations of all pairs of neighbours whose keys
+    // After sorting by these keys: makes `order` (places, back to front) respect the relations of all pairs of neighbours whose keys
     // rounding or a tie leaves in doubt, by exact signs. False when it cannot be proven that it does: too many such pairs (a regular grid),
-    // or one with a cell that is not in the order.
-    bool settle(const CellGraph& graph, const Eye& eye, std::span<CellId> order);
+    // or one with a cell that is not in the order. `scratch`: #T numbers to work with.
+    bool settle(const CellGraph& graph, const Eye& eye, std::span<CellId> order, std::span<std::uint32_t> scratch) const;
 
 private:
     struct Sphere {
         float x, y, z, power;  // centre; power of the origin
     };
-    bool doubtful(std::size_t a, std::size_t b) const;
+    class View;
 
     std::vector<Sphere> spheres_;
-    std::vector<float> slack_;     // #T: how far off a nearness may be; infinite for flat cells
-    std::vector<float> nearness_;  // #T, of the last eye
-    std::vector<std::uint32_t> position_;
+    std::vector<std::uint8_t> slack_;  // #T: how far off a nearness may be, at most; see slacks in power_keys.cpp
 };
 
 }  // namespace cellproj

@@ -3,14 +3,12 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
-#include <cmath>
-#include <limits>
 
-#include <glm/geometric.hpp>
+#include "sort/depth_keys.hpp"
 
 namespace cellproj {
 
@@ -20,41 +18,6 @@ using Relations = CellGraph::Relations;
 
 // The state of a cell in the order: more hidden cells than any other has, also after four of them have been counted down.
 constexpr Relations out = 0xf0;
-
-// Grows with the distance from the eye; for an eye at infinity up to a constant and a factor.
-double distance(const Eye& eye, const glm::dvec3& point) {
-    return eye.at_infinity ? -glm::dot(eye.xyz, point) : glm::distance(eye.xyz, point);
-}
-
-// The distances that a mesh can have from an eye, mapped onto the depths of a DepthQueue.
-class DepthScale {
-public:
-    DepthScale(const Bounds& box, const Eye& eye) {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        for (int corner = 0; corner < 8; ++corner) {
-            const double d = distance(eye, {corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                                            corner & 4 ? box.high.z : box.low.z});
-            low = std::min(low, d);
-            high = std::max(high, d);
-        }
-        // A face or the inside of the box can be nearer than every corner, but never by more than its diagonal.
-        if (!eye.at_infinity) low = std::max(0.0, std::min(low, high - box.diagonal()));
-        low_ = low;
-        scale_ = high > low ? (DepthQueue::depths - 1) / (high - low) : 0.0;
-    }
-
-    std::uint16_t operator()(double d) const {
-        return static_cast<std::uint16_t>(std::clamp((d - low_) * scale_, 0.0, DepthQueue::depths - 1.0));
-    }
-
-private:
-    double low_, scale_;
-};
-
-glm::dvec3 centroid(const TetMesh& mesh, CellId cell) {
-    const auto& t = mesh.tets[cell];
-    return 0.25 * (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]] + mesh.points[t[3]]);
-}
 
 }  // namespace
 
@@ -69,8 +32,7 @@ struct TopologicalSort::ArcHeads {
         if (arcs.empty()) return;
         is_behind.resize(cells);
         for (const OrderArc& arc : arcs) is_behind[arc.behind] = true;
-        std::sort(arcs.begin(), arcs.end(),
-                  [](const OrderArc& a, const OrderArc& b) { return a.behind != b.behind ? a.behind < b.behind : a.front < b.front; });
+        std::sort(arcs.begin(), arcs.end());
         fronts.reserve(arcs.size());
         for (const OrderArc& arc : arcs) fronts.push_back(arc.front);
         std::sort(fronts.begin(), fronts.end());
@@ -151,19 +113,36 @@ std::vector<CellId> TopologicalSort::stalled() const {
     return left;
 }
 
+// Depths are keys of centroids, spread over what a DepthQueue can tell apart. The keys stand where the order will.
+void TopologicalSort::find_depths(const CellGraph& graph, const Eye& eye) {
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    const Range all(0, graph.size(), 4096);
+    const FindKeys find_keys = centroid_keys(graph, eye, {});
+    struct Extent {
+        std::uint32_t low, high;
+    };
+    const Extent extent = oneapi::tbb::parallel_reduce(
+        all, Extent{largest_key, 0},
+        [&](const Range& range, Extent so_far) {
+            const auto keys = std::span(order_).subspan(range.begin(), range.size());
+            find_keys(range.begin(), keys);
+            const auto [low, high] = std::minmax_element(keys.begin(), keys.end());
+            return Extent{std::min(so_far.low, *low), std::max(so_far.high, *high)};
+        },
+        [](Extent a, Extent b) { return Extent{std::min(a.low, b.low), std::max(a.high, b.high)}; });
+    const double scale = extent.high > extent.low ? (DepthQueue::depths - 1.0) / (extent.high - extent.low) : 0.0;
+    depth_.resize(graph.size());
+    oneapi::tbb::parallel_for(all, [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) depth_[i] = static_cast<std::uint16_t>((extent.high - order_[i]) * scale);
+    });
+}
+
 std::span<const CellId> TopologicalSort::run_by_depth(const CellGraph& graph, const Eye& eye, std::size_t& unordered) {
     const std::size_t count = graph.size();
     state_.resize(count + 1);
     order_.resize(count + 1);
-    depth_.resize(count);
     graph.find_relations(eye, state_);
-    const DepthScale scale(bounds(graph.mesh().points), eye);
-    using Range = oneapi::tbb::blocked_range<std::size_t>;
-    oneapi::tbb::parallel_for(Range(0, count, 4096), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            depth_[i] = scale(distance(eye, centroid(graph.mesh(), graph.cell(static_cast<CellId>(i)))));
-        }
-    });
+    find_depths(graph, eye);
 
     queue_.reset(count);
     done_ = 0;

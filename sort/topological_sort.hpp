@@ -24,12 +24,16 @@ public:
     // against its relations and counted in `unordered`.
     std::span<const CellId> run_by_depth(const CellGraph& graph, const Eye& eye, std::size_t& unordered);
 
+    // The last order again.
+    std::span<const CellId> places() const { return std::span(order_).first(done_); }
     // What is left when `run` returns fewer than all: the places that are not in the order, ascending.
     std::vector<CellId> stalled() const;
     void release() { *this = {}; }
 
 private:
     struct ArcHeads;
+
+    void find_depths(const CellGraph& graph, const Eye& eye);
 
     std::vector<CellGraph::Relations> state_;  // #T + 1: relations, the number of hidden ones counted down; `out` when in the order
     std::vector<CellId> order_;                // #T + 1: the order grows from the front, a stack of free cells from the end

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -58,6 +59,8 @@ struct ViewOrder {
 // `behind` must come before `front`: a relation that face neighbours do not tell.
 struct OrderArc {
     CellId behind, front;
+
+    auto operator<=>(const OrderArc&) const = default;
 };
 
 // The pixel centres of a picture, row by row. In perspective, the ray of pixel (i, j) goes from the eye through

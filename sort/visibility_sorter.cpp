@@ -38,33 +38,19 @@ std::vector<std::uint32_t> positions(const ViewOrder& order, std::size_t cells) 
     return position;
 }
 
-// Counts the faces of all cells for which `wrong(cell, face)` holds.
-template <class Wrong>
-std::size_t count_faces(std::size_t cells, Wrong wrong) {
-    const auto count = [&](const Range& range, std::size_t so_far) {
-        for (std::size_t c = range.begin(); c != range.end(); ++c) {
-            for (int face = 0; face < 4; ++face) so_far += wrong(static_cast<CellId>(c), face) ? 1 : 0;
-        }
-        return so_far;
-    };
-    return oneapi::tbb::parallel_reduce(Range(0, cells, cells_per_task), std::size_t{0}, count, std::plus<>());
-}
-
-// Whether cells at positions a and b stand the wrong way round when the eye is on b's side (+1) or on a's (−1) of their face.
-bool wrong_way_round(std::uint32_t a, std::uint32_t b, int beyond) {
-    return a != absent && b != absent && beyond != 0 && (beyond > 0) != (b > a);
-}
-
 }  // namespace
 
 struct VisibilitySorter::State {
+    State(const TetMesh& mesh, const Adjacency& adjacency)
+        : graph(mesh, adjacency), convex(fills_convex_body(graph)), exact(graph) {}
+
     CellGraph graph;
     bool convex;
+    ExactOrder exact;
     TopologicalSort topological;
     KeySort key_sort;
-    std::optional<bool> delaunay;   // once it was asked for
+    std::optional<bool> delaunay;     // once it was asked for
     std::optional<PowerKeys> powers;  // likewise
-    ExactOrder exact;
     std::vector<std::uint32_t> items;
     std::optional<Eye> last_eye;  // of the last proven order by relations, in convex meshes
     CoherentOrder coherent;
@@ -81,21 +67,20 @@ struct VisibilitySorter::State {
     bool close_to_last(const Eye& eye) const;
     ViewOrder only_visible(const ViewOrder& order, std::span<const std::uint8_t> visible);
     ViewOrder order_exactly(const Eye& eye, const PixelGrid* pixels, OrderReport& report);
+    ViewOrder cut_cycles(const Eye& eye, OrderReport& report);
     std::span<const CellId> in_callers_numbers(std::span<const CellId> places);
+    std::span<const CellId> in_place_in_callers_numbers(std::span<CellId> places);
+    void renumber(std::span<const CellId> places, std::span<CellId> cells) const;
 };
 
 VisibilitySorter::VisibilitySorter(const TetMesh& mesh, const Adjacency& adjacency)
-    : state_(std::make_unique<State>(State{.graph = CellGraph(mesh, adjacency), .convex = false, .topological = {}, .key_sort = {}, .delaunay = {}, .powers = {}, .exact = {}, .items = {}, .last_eye = {}, .coherent = {}, .coherent_fails = false})) {
-    state_->convex = fills_convex_body(state_->graph);
-}
+    : state_(std::make_unique<State>(mesh, adjacency)) {}
 
 VisibilitySorter::~VisibilitySorter() = default;
 VisibilitySorter::VisibilitySorter(VisibilitySorter&&) noexcept = default;
 VisibilitySorter& VisibilitySorter::operator=(VisibilitySorter&&) noexcept = default;
 
 bool VisibilitySorter::convex() const { return state_->convex; }
-const CellGraph& VisibilitySorter::graph() const { return state_->graph; }
-Adjacency VisibilitySorter::adjacency() const { return state_->graph.adjacency(); }
 
 ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::optional<OrderMethod> method,
                                   const PixelGrid* pixels, std::span<const std::uint8_t> visible) {
@@ -115,7 +100,7 @@ ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::opti
                                                              : state_->order_by_relations(eye, found);
     // A convex body with visibility cycles: cut them.
     const bool has_cycles = found.method == OrderMethod::mpvo && state_->convex && cells.size() < state_->graph.size();
-    const ViewOrder order = has_cycles ? state_->order_exactly(eye, nullptr, found) : ViewOrder{cells, {}};
+    const ViewOrder order = has_cycles ? state_->cut_cycles(eye, found) : ViewOrder{cells, {}};
     if (report) *report = found;
     const bool by_keys = found.method == OrderMethod::centroid || found.method == OrderMethod::power;  // which leave out what is not visible
     return by_keys ? order : state_->only_visible(order, visible);
@@ -154,24 +139,27 @@ ViewOrder VisibilitySorter::State::order_exactly(const Eye& eye, const PixelGrid
     return exact.order(graph, topological, eye, pixels, report);
 }
 
+ViewOrder VisibilitySorter::State::cut_cycles(const Eye& eye, OrderReport& report) {
+    free_items();
+    return exact.cut_cycles(graph, topological, eye, report);
+}
+
 bool VisibilitySorter::State::is_delaunay() {
     if (!delaunay) delaunay = convex && graph.flat_cells() == 0 && locally_delaunay(graph);
     return *delaunay;
 }
 
 std::span<const CellId> VisibilitySorter::State::order_by_centroids(const Eye& eye, std::span<const std::uint8_t> visible) {
-    find_centroid_keys(graph, eye, visible, key_sort.keys(graph.size()));
-    return graph.keeps_order() ? key_sort.sort() : key_sort.sort(graph.cells());
+    return in_place_in_callers_numbers(key_sort.sort(graph.size(), centroid_keys(graph, eye, visible)));
 }
 
 std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye, std::span<const std::uint8_t> visible,
                                                                  OrderReport& report) {
     if (!powers) powers.emplace(graph);
-    powers->find(graph, eye, visible, key_sort.keys(graph.size()));
-    auto places = key_sort.sort();
-    if (!is_delaunay()) return in_callers_numbers(places);
-    report.exact = powers->settle(graph, eye, places);
-    if (report.exact) return in_callers_numbers(places);
+    auto places = key_sort.sort(graph.size(), powers->keys(graph, eye, visible));
+    if (!is_delaunay()) return in_place_in_callers_numbers(places);
+    report.exact = powers->settle(graph, eye, places, key_sort.scratch());
+    if (report.exact) return in_place_in_callers_numbers(places);
     if (visible.empty()) {
         make_room_for(OrderMethod::mpvo);
         return order_by_relations(eye, report);
@@ -179,9 +167,9 @@ std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye,
     // A relation in doubt leads through a cell that was left out: with all cells.
     const auto all = order_by_powers(eye, {}, report);
     if (report.method != OrderMethod::power) return all;
-    places = key_sort.sorted();
-    const auto last = std::remove_if(places.begin(), places.end(), [&](CellId place) { return visible[graph.cell(place)] == 0; });
-    return in_callers_numbers(places.first(static_cast<std::size_t>(last - places.begin())));
+    const auto cells = key_sort.sorted();  // which `all` stands in
+    const auto last = std::remove_if(cells.begin(), cells.end(), [&](CellId cell) { return visible[cell] == 0; });
+    return cells.first(static_cast<std::size_t>(last - cells.begin()));
 }
 
 // In a mesh that fills a convex body any topological order will do; fewer than all when there are cycles. Elsewhere depth has to help.
@@ -225,20 +213,39 @@ bool VisibilitySorter::State::close_to_last(const Eye& eye) const {
 std::span<const CellId> VisibilitySorter::State::in_callers_numbers(std::span<const CellId> places) {
     if (graph.keeps_order()) return places;
     items.resize(places.size());
-    oneapi::tbb::parallel_for(Range(0, places.size(), cells_per_task), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) items[i] = graph.cell(places[i]);
-    });
+    renumber(places, items);
     return items;
+}
+
+std::span<const CellId> VisibilitySorter::State::in_place_in_callers_numbers(std::span<CellId> places) {
+    if (!graph.keeps_order()) renumber(places, places);
+    return places;
+}
+
+void VisibilitySorter::State::renumber(std::span<const CellId> places, std::span<CellId> cells) const {
+    oneapi::tbb::parallel_for(Range(0, places.size(), cells_per_task), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) cells[i] = graph.cell(places[i]);
+    });
 }
 
 std::size_t VisibilitySorter::count_violations(const ViewOrder& order, const Eye& eye) const {
     const CellGraph& graph = state_->graph;
     const auto position = positions(order, graph.size());
-    return count_faces(graph.size(), [&](CellId place, int face) {
+    const auto wrong_way_round = [&](CellId place, int face) {
         const CellId other = graph.neighbours(place)[static_cast<std::size_t>(face)];
         if (other == graph.nobody() || other < place) return false;
-        return wrong_way_round(position[graph.cell(place)], position[graph.cell(other)], graph.beyond(eye, place, face));
-    });
+        const std::uint32_t here = position[graph.cell(place)], there = position[graph.cell(other)];
+        if (here == absent || there == absent) return false;
+        const int beyond = graph.beyond(eye, place, face);
+        return beyond != 0 && (beyond > 0) != (there > here);
+    };
+    const auto count = [&](const Range& range, std::size_t so_far) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            for (int face = 0; face < 4; ++face) so_far += wrong_way_round(static_cast<CellId>(i), face) ? 1 : 0;
+        }
+        return so_far;
+    };
+    return oneapi::tbb::parallel_reduce(Range(0, graph.size(), cells_per_task), std::size_t{0}, count, std::plus<>());
 }
 
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report) {
@@ -265,17 +272,6 @@ std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport
     }
     if (report) *report = found;
     return cells;
-}
-
-std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye) {
-    const auto position = positions(order, mesh.tets.size());
-    return count_faces(mesh.tets.size(), [&](CellId cell, int face) {
-        const CellId other = adjacency.neighbours[cell][static_cast<std::size_t>(face)];
-        if (other == no_cell || other < cell) return false;
-        const auto v = face_vertices(mesh.tets[cell], face);
-        const int beyond = side_of_plane(eye, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
-        return wrong_way_round(position[cell], position[other], beyond);
-    });
 }
 
 }  // namespace cellproj

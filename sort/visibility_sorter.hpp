@@ -26,8 +26,6 @@
 
 namespace cellproj {
 
-class CellGraph;
-
 // Keeps what does not depend on the eye. The mesh must outlive the sorter and stay unchanged. Time: linear. Same order on every machine
 // and for any number of threads; one call at a time.
 class VisibilitySorter {
@@ -45,9 +43,6 @@ public:
 
     // Whether the cells fill a convex body (sort/mesh_facts.hpp).
     bool convex() const;
-    const CellGraph& graph() const;
-    // In the caller's numbers, without faces that have both cells on one side.
-    Adjacency adjacency() const;
 
     // How many pairs of face neighbours stand the wrong way round, by exact signs. Pairs with a cell that is split or left out do not
     // count.
@@ -61,8 +56,5 @@ private:
 // One order of all cells for one eye, as wholes: a cell that had to be split comes where its farthest piece would, and is counted as
 // unordered.
 std::vector<CellId> order_cells(const TetMesh& mesh, const Eye& eye, OrderReport* report = nullptr);
-
-// The same count for any adjacency, by the exact predicate alone: every cell positively oriented.
-std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye);
 
 }  // namespace cellproj

@@ -17,11 +17,13 @@
 
 #include "sort/visibility_sorter.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/order_judge.hpp"
 #include "tests/support/orders.hpp"
 
 namespace cellproj {
 namespace {
 
+using testing_support::count_order_violations;
 using testing_support::delaunay_mesh;
 using testing_support::expect_each_once;
 using testing_support::grid_mesh;

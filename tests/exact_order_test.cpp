@@ -23,6 +23,7 @@
 #include "sort/boundary_scan.hpp"
 #include "sort/convex_part.hpp"
 #include "sort/cycles.hpp"
+#include "sort/exact_order.hpp"
 #include "sort/strong_components.hpp"
 #include "sort/visibility_sorter.hpp"
 #include "tests/support/meshes.hpp"
@@ -124,7 +125,7 @@ TEST(ExactOrder, ReportsCyclesAndSplitCells) {
     std::iota(all.begin(), all.end(), 0U);
     for (CellId place = 0; place < graph.size(); ++place)
         places[graph.cell(place)] = place;
-    auto arcs = boundary_overlaps(stair, order_boundary(stair, graph.adjacency()), along_z);
+    auto arcs = boundary_overlaps(stair, order_boundary(graph), along_z);
     EXPECT_EQ(arcs.size(), 1000U);  // each step lies over the next one only
     for (OrderArc& arc : arcs)
         arc = {places[arc.behind], places[arc.front]};
@@ -139,6 +140,30 @@ TEST(ExactOrder, ReportsCyclesAndSplitCells) {
     std::vector<CellId> cells(twisted.tets.size());
     std::iota(cells.begin(), cells.end(), 0U);
     EXPECT_GE(20 * resolve_cycles(twisted_graph, cells, {}, along_z).cyclic_cells, cells.size());  // one in twenty
+}
+
+// A convex mesh needs no relations across the outside; its cycles are cut in every view, also in those that follow the last one.
+TEST(ExactOrder, CyclesOfAConvexMesh) {
+    const TetMesh mesh = twisted_cube(10);
+    VisibilitySorter sorter(mesh);
+    ASSERT_TRUE(sorter.convex());
+    const RayIndex index(mesh);
+    std::mt19937_64 random(7);
+    std::size_t cycles = 0;
+    for (int i = 0; i < eyes; ++i) {
+        PixelGrid grid = pixel_grid(judging_camera(bounds(mesh.points), i, random), picture);
+        for (int step = 0; step < 3; ++step) {
+            OrderReport report;
+            const ViewOrder order = sorter.order(grid.eye, &report);
+            EXPECT_EQ(report.method, OrderMethod::mpvo);
+            EXPECT_TRUE(report.exact) << "eye " << i;
+            EXPECT_TRUE(is_complete(mesh, order)) << "eye " << i;
+            EXPECT_EQ(wrong_rays(mesh, index, order, random_rays(index, grid, rays_per_eye, random)), 0U) << "eye " << i;
+            cycles += report.cycles;
+            grid.eye.xyz += 0.01 * glm::length(grid.eye.xyz) * glm::dvec3(1, 0.5, 0);
+        }
+    }
+    EXPECT_GT(cycles, 0U);
 }
 
 // Pieces in contact whose points were never merged: leaving the one comes before entering the other.
@@ -213,6 +238,70 @@ TEST(ExactOrder, WhatCannotBePartedIsOrderedByDepthAndCounted) {
     const ResolvedCycles resolved = resolve_cycles(graph, places, arcs, Eye::towards({0, 0, 1}));
     EXPECT_EQ(resolved.unordered, 2U);
     EXPECT_TRUE(is_complete(mesh, {resolved.items, resolved.pieces}));
+}
+
+// Cycles that may be cut into less than it takes: the rest by depth, every cell once, and the report says so.
+TEST(ExactOrder, WhatIsCutTooOftenIsOrderedByDepthAndCounted) {
+    struct Case {
+        TetMesh mesh;
+        CutLimit limit;
+        bool some_are_cut;
+    };
+    const CutLimit none{.per_cell = 1, .spare = 0};
+    for (const auto& [mesh, limit, some_are_cut] :
+         {Case{overlapping_sticks(), none, false}, Case{spiral_stair(100), none, false}, Case{twisted_mesh(8, 20), none, false},
+          Case{cyclic_ring(12), none, false}, Case{twisted_mesh(8, 20), {.per_cell = 1, .spare = 32}, true}}) {
+        const CellGraph graph(mesh, build_adjacency(mesh));
+        TopologicalSort topological;
+        ExactOrder enough(graph), too_little(graph, limit);
+        std::size_t unordered = 0, split = 0;
+        for (const Eye& eye : {Eye::towards({0, 0, 1}), Eye::towards({0.1, 0.05, -1})}) {
+            OrderReport report{.method = OrderMethod::bsp};
+            EXPECT_TRUE(is_complete(mesh, enough.order(graph, topological, eye, nullptr, report)));
+            EXPECT_TRUE(report.exact);
+            EXPECT_EQ(report.unordered, 0U);
+
+            report = {.method = OrderMethod::bsp};
+            EXPECT_TRUE(is_complete(mesh, too_little.order(graph, topological, eye, nullptr, report)));
+            EXPECT_EQ(report.exact, report.unordered == 0);
+            EXPECT_LE(report.unordered, mesh.tets.size());
+            unordered += report.unordered;
+            split += report.split_cells;
+        }
+        EXPECT_GE(unordered, 3U);  // cells in the shortest cycle
+        EXPECT_EQ(split > 0, some_are_cut);
+    }
+}
+
+// The boundary by exact signs over an adjacency that the graph did not make.
+bool separates(const TetMesh& mesh, CellId cell, int face, CellId other) {
+    const auto f = face_vertices(mesh.tets[cell], face);
+    const auto side = [&](CellId of) {
+        for (const VertexId v : mesh.tets[of]) {
+            if (std::find(f.begin(), f.end(), v) == f.end()) return orientation(mesh.points[f[0]], mesh.points[f[1]], mesh.points[f[2]], mesh.points[v]);
+        }
+        return 0;
+    };
+    return side(cell) * side(other) < 0;
+}
+
+TEST(BoundaryRelations, BoundaryIsWhatSeparatesNoCells) {
+    TetMesh folded = grid_mesh(2);
+    folded.tets.push_back({folded.tets[3][0], folded.tets[3][1], folded.tets[3][2], folded.tets[20][3]});
+    for (const TetMesh& mesh : {grid_mesh(3), cavity_mesh(8, 20), twisted_mesh(6, 10), damaged_mesh(6, 60), overlapping_sticks(), folded}) {
+        const Adjacency adjacency = build_adjacency(mesh);
+        std::vector<std::pair<CellId, int>> expected, found;
+        for (CellId cell = 0; cell < mesh.tets.size(); ++cell) {
+            const auto& t = mesh.tets[cell];
+            if (orientation(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) == 0) continue;
+            for (int face = 0; face < 4; ++face) {
+                const CellId other = adjacency.neighbours[cell][static_cast<std::size_t>(face)];
+                if (other == no_cell || !separates(mesh, cell, face, other)) expected.emplace_back(cell, face);
+            }
+        }
+        for (const BoundaryFace& face : order_boundary(CellGraph(mesh, adjacency))) found.emplace_back(face.cell, face.face);
+        EXPECT_EQ(found, expected);
+    }
 }
 
 // ---- Pictures ----
@@ -358,29 +447,19 @@ TEST(ExactOrder, IsTheSameForAnyNumberOfThreads) {
 // What the scan sees at pixels is among the pairs that overlap; at a fine picture of few faces it is all that is not implied.
 TEST(BoundaryRelations, TwoWaysAgree) {
     for (const TetMesh& mesh : {springs_mesh(60), pieces_mesh(30, 2), cavity_mesh(8, 20), twisted_mesh(8, 10)}) {
-        const auto boundary = order_boundary(mesh, build_adjacency(mesh));
+        const auto boundary = order_boundary(CellGraph(mesh, build_adjacency(mesh)));
         std::mt19937_64 random(7);
         for (int i = 0; i < (CELLPROJ_SANITIZED ? 4 : 8); ++i) {
             const PixelGrid grid = pixel_grid(judging_camera(bounds(mesh.points), i, random), picture);
             const BoundaryScan scan = scan_boundary(mesh, boundary, grid);
             EXPECT_EQ(scan.crossed_rays, 0U);
             const auto pairs = boundary_overlaps(mesh, boundary, grid.eye);
-            const auto less = [](const OrderArc& a, const OrderArc& b) { return a.behind != b.behind ? a.behind < b.behind : a.front < b.front; };
-            EXPECT_TRUE(std::includes(pairs.begin(), pairs.end(), scan.arcs.begin(), scan.arcs.end(), less)) << "eye " << i;
+            EXPECT_TRUE(std::includes(pairs.begin(), pairs.end(), scan.arcs.begin(), scan.arcs.end())) << "eye " << i;
             // Two cells, both convex, cannot each be behind the other.
             for (const OrderArc& arc : pairs)
-                EXPECT_FALSE(std::binary_search(pairs.begin(), pairs.end(), OrderArc{arc.front, arc.behind}, less));
+                EXPECT_FALSE(std::binary_search(pairs.begin(), pairs.end(), OrderArc{arc.front, arc.behind}));
         }
     }
-}
-
-TEST(BoundaryRelations, ClosedBoundaryOfSoundCells) {
-    const TetMesh mesh = grid_mesh(3);
-    EXPECT_EQ(order_boundary(mesh, build_adjacency(mesh)).size(), boundary_faces(build_adjacency(mesh)).size());
-    // A flat cell on a side hides nothing: the two faces behind it are open, its own are not.
-    const TetMesh damaged = damaged_mesh(3, 5);
-    for (const BoundaryFace& face : order_boundary(damaged, build_adjacency(damaged)))
-        EXPECT_NE(signed_volume(damaged, face.cell), 0.0);
 }
 
 // ---- Cutting ----

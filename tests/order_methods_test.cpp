@@ -18,11 +18,13 @@
 #include "sort/mesh_facts.hpp"
 #include "sort/visibility_sorter.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/order_judge.hpp"
 #include "tests/support/orders.hpp"
 
 namespace cellproj {
 namespace {
 
+using testing_support::count_order_violations;
 using testing_support::delaunay_mesh;
 using testing_support::expect_each_once;
 using testing_support::grid_mesh;
@@ -319,18 +321,29 @@ TEST(OrderMethods, AnOrbitStaysExact) {
 
 TEST(KeySort, SortsStablyAndLeavesOut) {
     std::mt19937_64 random(26);
-    for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{31}, std::size_t{100000}}) {
-        KeySort sort;
-        const auto keys = sort.keys(count);
-        std::vector<std::uint32_t> expected;
+    KeySort sort;
+    // One cell, one part, many parts; more cells than numbers within a part of one thread.
+    for (const std::size_t count : {0U, 1U, 31U, 100000U, CELLPROJ_SANITIZED ? 600000U : 5000000U, 100U}) {
+        std::vector<std::uint32_t> keys(count), expected;
         for (std::uint32_t i = 0; i < count; ++i) {
-            keys[i] = random() % 5 == 0 ? no_key : static_cast<std::uint32_t>(random()) & (i % 2 ? largest_key : 0xffU);
+            const std::uint32_t few = i % 3 == 0 ? largest_key : i % 3 == 1 ? 0xffU : 0U;
+            keys[i] = random() % 5 == 0 ? no_key : static_cast<std::uint32_t>(random()) & few;
             if (keys[i] != no_key) expected.push_back(i);
         }
-        const std::vector<std::uint32_t> copy(keys.begin(), keys.end());
-        std::stable_sort(expected.begin(), expected.end(), [&](std::uint32_t a, std::uint32_t b) { return copy[a] < copy[b]; });
-        const auto sorted = sort.sort();
-        EXPECT_EQ(std::vector<std::uint32_t>(sorted.begin(), sorted.end()), expected);
+        std::stable_sort(expected.begin(), expected.end(), [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
+        for (const std::size_t threads : {1U, 2U, 4U}) {
+            const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+            const auto sorted = sort.sort(count, [&](std::size_t first, std::span<std::uint32_t> some) {
+                std::copy_n(keys.begin() + static_cast<std::ptrdiff_t>(first), some.size(), some.begin());
+            });
+            ASSERT_EQ(std::vector<std::uint32_t>(sorted.begin(), sorted.end()), expected) << count << " by " << threads;
+        }
+    }
+    // All have one key, or none.
+    for (const std::uint32_t key : {std::uint32_t{0}, largest_key, no_key}) {
+        const auto sorted = sort.sort(50000, [&](std::size_t, std::span<std::uint32_t> some) { std::fill(some.begin(), some.end(), key); });
+        ASSERT_EQ(sorted.size(), key == no_key ? 0U : 50000U);
+        for (std::uint32_t i = 0; i < sorted.size(); ++i) ASSERT_EQ(sorted[i], i);
     }
 }
 

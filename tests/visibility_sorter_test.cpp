@@ -19,11 +19,13 @@
 #include "mesh/error.hpp"
 #include "sort/depth_queue.hpp"
 #include "tests/support/meshes.hpp"
+#include "tests/support/order_judge.hpp"
 #include "tests/support/orders.hpp"
 
 namespace cellproj {
 namespace {
 
+using testing_support::count_order_violations;
 using testing_support::delaunay_mesh;
 using testing_support::expect_each_once;
 using testing_support::grid_mesh;
@@ -75,6 +77,7 @@ class DelaunayOrder : public testing::TestWithParam<int> {};
 // 12k and 200k cells, 100 eyes each.
 TEST_P(DelaunayOrder, HasNoViolationFromAnyEye) {
     const TetMesh mesh = delaunay_mesh(GetParam(), 11);
+    const Adjacency adjacency = build_adjacency(mesh);
     VisibilitySorter sorter(mesh);
     std::mt19937_64 random(12);
     for (int i = 0; i < 100; ++i) {
@@ -82,7 +85,7 @@ TEST_P(DelaunayOrder, HasNoViolationFromAnyEye) {
         OrderReport report;
         const auto order = sorter.order(eye, &report);
         ASSERT_EQ(report.unordered, 0U) << "eye " << i;
-        ASSERT_EQ(count_order_violations(mesh, sorter.adjacency(), order, eye), 0U) << "eye " << i;
+        ASSERT_EQ(count_order_violations(mesh, adjacency, order, eye), 0U) << "eye " << i;
         if (i < 4) expect_each_once(order.items, mesh.tets.size());
     }
 }
@@ -103,13 +106,14 @@ TEST(VisibilitySorter, MeetsTheCellsInTheOrderOfTheRay) {
 // The judge itself must be able to say no.
 TEST(VisibilitySorter, TheJudgesCatchAReversedOrder) {
     const TetMesh mesh = grid_mesh(4, 0.2, 5);
+    const Adjacency adjacency = build_adjacency(mesh);
     VisibilitySorter sorter(mesh);
     const Eye eye = Eye::at({3, 2, 1});
     auto order = order_cells(mesh, eye);
-    EXPECT_EQ(count_order_violations(mesh, sorter.adjacency(), {order, {}}, eye), 0U);
+    EXPECT_EQ(count_order_violations(mesh, adjacency, {order, {}}, eye), 0U);
     std::reverse(order.begin(), order.end());
     std::mt19937_64 random(23);
-    EXPECT_GT(count_order_violations(mesh, sorter.adjacency(), {order, {}}, eye), 500U);
+    EXPECT_GT(count_order_violations(mesh, adjacency, {order, {}}, eye), 500U);
     EXPECT_GT(wrong_along_rays(mesh, order, eye, 20, random), 20U);
 }
 
@@ -127,6 +131,7 @@ TEST(VisibilitySorter, OneCellAndTwo) {
 // Eyes in the planes of many faces at once, on edges and at vertices of a regular grid.
 TEST(VisibilitySorter, EyesInThePlanesOfFaces) {
     const TetMesh mesh = grid_mesh(6);
+    const Adjacency adjacency = build_adjacency(mesh);
     VisibilitySorter sorter(mesh);
     for (const Eye& eye : {Eye::towards({1, 0, 0}), Eye::towards({1, 1, 0}), Eye::towards({1, 1, 1}), Eye::at({0.5, 0.5, 0.5}),
                            Eye::at({0, 0, 0}), Eye::at({1.0 / 6, 1.0 / 6, 0.25}), Eye::at({2, 0.5, 0.5})}) {
@@ -134,28 +139,29 @@ TEST(VisibilitySorter, EyesInThePlanesOfFaces) {
         const auto order = sorter.order(eye, &report);
         expect_each_once(order.items, mesh.tets.size());
         EXPECT_EQ(report.unordered, 0U);
-        EXPECT_EQ(count_order_violations(mesh, sorter.adjacency(), order, eye), 0U);
+        EXPECT_EQ(count_order_violations(mesh, adjacency, order, eye), 0U);
     }
 }
 
 TEST(VisibilitySorter, ScaleAndOffsetDoNotMatter) {
     TetMesh mesh = grid_mesh(8, 0.2, 31);
     const auto eye = Eye::at({3, -2, 1.5});
+    const Adjacency adjacency = build_adjacency(mesh);
     VisibilitySorter reference(mesh);
     for (const double scale : {1e-12, 1e12}) {
         TetMesh scaled = mesh;
         for (auto& p : scaled.points) p *= scale;
         VisibilitySorter sorter(scaled);
         const auto order = sorter.order(Eye::at(eye.xyz * scale));
-        EXPECT_EQ(count_order_violations(scaled, sorter.adjacency(), order, Eye::at(eye.xyz * scale)), 0U);
-        EXPECT_EQ(count_order_violations(mesh, reference.adjacency(), order, eye), 0U);
+        EXPECT_EQ(count_order_violations(scaled, adjacency, order, Eye::at(eye.xyz * scale)), 0U);
+        EXPECT_EQ(count_order_violations(mesh, adjacency, order, eye), 0U);
     }
     TetMesh moved = mesh;
     for (auto& p : moved.points) p = 1e-3 * p + 1e6;  // cells of 1e-4 at 1e6: 1e-10 between float64 numbers
     const auto moved_eye = Eye::at(1e-3 * eye.xyz + 1e6);
     VisibilitySorter sorter(moved);
     OrderReport report;
-    EXPECT_EQ(count_order_violations(moved, sorter.adjacency(), sorter.order(moved_eye, &report), moved_eye), 0U);
+    EXPECT_EQ(count_order_violations(moved, adjacency, sorter.order(moved_eye, &report), moved_eye), 0U);
     EXPECT_EQ(report.unordered, 0U);
 }
 
@@ -174,14 +180,15 @@ TEST(VisibilitySorter, SameOrderForAnyNumberOfThreads) {
 TEST(VisibilitySorter, ACycleIsLeftByDepthAndCounted) {
     const TetMesh mesh = testing_support::cyclic_ring(12);
     const Eye above = Eye::towards({0, 0, 1});
+    const Adjacency adjacency = build_adjacency(mesh);
     VisibilitySorter sorter(mesh);
     OrderReport report;
     const auto order = sorter.order(above, &report, OrderMethod::mpvo);
     expect_each_once(order.items, mesh.tets.size());
     EXPECT_GE(report.unordered, 1U);
     EXPECT_FALSE(report.exact);
-    EXPECT_GE(count_order_violations(mesh, sorter.adjacency(), order, above), 1U);  // no order can respect a cycle
-    EXPECT_LE(count_order_violations(mesh, sorter.adjacency(), order, above), report.unordered * 4);
+    EXPECT_GE(count_order_violations(mesh, adjacency, order, above), 1U);  // no order can respect a cycle
+    EXPECT_LE(count_order_violations(mesh, adjacency, order, above), report.unordered * 4);
     sorter.order(Eye::towards({1, 0.1, 0}), &report, OrderMethod::mpvo);  // from the side there is none
     EXPECT_EQ(report.unordered, 0U);
 

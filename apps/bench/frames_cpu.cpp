@@ -50,14 +50,6 @@ void CpuFrame(benchmark::State& state, Colors colors) {  // camera to pixels in 
     per_cell(state, s);
 }
 
-void CpuSort(benchmark::State& state) {
-    const Scene s = scene(static_cast<int>(state.range(0)), Colors::ramp);
-    PreparedScene prepared(s);
-    int i = 0;
-    for (auto _ : state) benchmark::DoNotOptimize(prepared.sorter().order(scenes::measured_view(i++).viewpoint()).items.data());
-    per_cell(state, s);
-}
-
 // The stages behind the order, of which one is measured.
 enum class Stage { transform, bin, raster };
 
@@ -109,7 +101,6 @@ void sizes(benchmark::internal::Benchmark* b) {
 
 BENCHMARK_CAPTURE(CpuFrame, ramp, Colors::ramp)->Apply(sizes)->Args({34, 1024})->Args({65, 1024});
 BENCHMARK_CAPTURE(CpuFrame, peaks, Colors::peaks)->Apply(sizes)->Args({34, 1024})->Args({65, 1024});
-BENCHMARK(CpuSort)->Apply(sizes);
 BENCHMARK_CAPTURE(CpuStage, transform, Stage::transform, Colors::ramp)->Apply(sizes);
 BENCHMARK_CAPTURE(CpuStage, bin, Stage::bin, Colors::ramp)->Apply(sizes);
 BENCHMARK_CAPTURE(CpuStage, raster_ramp, Stage::raster, Colors::ramp)->Apply(sizes);

@@ -41,7 +41,7 @@ void judge(const std::string& name, const TetMesh& mesh, int eyes, int rays) {
     constexpr OrderMethod methods[] = {OrderMethod::centroid, OrderMethod::mpvo, OrderMethod::bsp, OrderMethod::sxmpvo};
     Row rows[4];
     double scan_ms = 0;
-    const auto boundary = order_boundary(mesh, build_adjacency(mesh));
+    const auto boundary = order_boundary(CellGraph(mesh, build_adjacency(mesh)));
     std::mt19937_64 random(7);
     for (int i = 0; i < eyes; ++i) {
         const PixelGrid grid = pixel_grid(judging_camera(bounds(mesh.points), i, random), {512, 512});

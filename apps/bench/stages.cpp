@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Each stage of a picture by itself, on jittered grids of 0.2 and 1.5 million tetrahedra, at 512×512, a new view at every
-// iteration. cellproj_bench --benchmark_filter=Sort runs one of them; medians of several runs:
+// iteration. cellproj_bench --benchmark_filter=Project runs one of them; medians of several runs:
 // --benchmark_repetitions=5 --benchmark_report_aggregates_only=true.
 #include <benchmark/benchmark.h>
 
@@ -14,7 +14,6 @@
 #include "render/cell_stream.hpp"
 #include "render/prepared_scene.hpp"
 #include "render/renderer.hpp"
-#include "sort/visibility_sorter.hpp"
 #include "tests/support/meshes.hpp"
 
 namespace {
@@ -80,14 +79,6 @@ void Update(benchmark::State& state, Backend backend) {  // another transfer fun
     per_cell(state, s);
 }
 
-void Sort(benchmark::State& state) {
-    const Scene& s = scene(static_cast<int>(state.range(0)));
-    VisibilitySorter sorter(*s.mesh);
-    int i = 0;
-    for (auto _ : state) benchmark::DoNotOptimize(sorter.order(scenes::measured_view(i++).viewpoint()));
-    per_cell(state, s);
-}
-
 void Project(benchmark::State& state) {  // transform, classes, silhouettes; without drawing
     const Scene& s = scene(static_cast<int>(state.range(0)));
     PreparedScene prepared(s);
@@ -136,7 +127,6 @@ BENCHMARK(Prepare)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMilliseco
 BENCHMARK(Table)->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(Update, cpu, Backend::cpu)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(Update, gl, Backend::gl_osmesa)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(Sort)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Project)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(FrameByNodes)->Arg(2)->Arg(10000)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(Frame)->Arg(small_grid)->Arg(large_grid)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -148,6 +148,27 @@ std::size_t wrong_rays(const TetMesh& mesh, const RayIndex& index, const ViewOrd
         std::plus<>());
 }
 
+std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye) {
+    std::vector<std::uint32_t> position(mesh.tets.size(), absent);
+    for (std::uint32_t i = 0; i < order.items.size(); ++i) {
+        if (order.items[i] < mesh.tets.size()) position[order.items[i]] = i;
+    }
+    using Range = oneapi::tbb::blocked_range<CellId>;
+    const auto count = [&](const Range& range, std::size_t wrong) {
+        for (CellId cell = range.begin(); cell != range.end(); ++cell) {
+            for (int face = 0; face < 4; ++face) {
+                const CellId other = adjacency.neighbours[cell][static_cast<std::size_t>(face)];
+                if (other == no_cell || other < cell || position[cell] == absent || position[other] == absent) continue;
+                const auto v = face_vertices(mesh.tets[cell], face);
+                const int side = side_of_plane(eye, mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]);
+                wrong += (side > 0 && position[other] < position[cell]) || (side < 0 && position[cell] < position[other]) ? 1 : 0;
+            }
+        }
+        return wrong;
+    };
+    return oneapi::tbb::parallel_reduce(Range(0, static_cast<CellId>(mesh.tets.size()), 4096), std::size_t{0}, count, std::plus<>());
+}
+
 bool is_complete(const TetMesh& mesh, const ViewOrder& order) {
     std::vector<double> filled(mesh.tets.size(), 0.0);
     std::vector<std::uint8_t> whole(mesh.tets.size(), 0);

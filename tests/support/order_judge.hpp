@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The judge of orders: the sequence of cells along rays, found with no order and no neighbours (render/ray_index.hpp).
+// The judges of orders: the sequence of cells along rays, found with no order and no neighbours (render/ray_index.hpp), and the sides of
+// faces.
 #pragma once
 
 #include <cstddef>
@@ -30,6 +31,10 @@ std::vector<ViewRay> random_rays(const RayIndex& index, const PixelGrid& grid, i
 // and of the corners of pieces. A ray that runs in a face passes now on one side of it, now on the other by rounding: it counts only
 // when the four rays beside it, 1e-9 of the mesh's size away, are wrong as well.
 std::size_t wrong_rays(const TetMesh& mesh, const RayIndex& index, const ViewOrder& order, std::span<const ViewRay> rays);
+
+// How many pairs of face neighbours of an adjacency stand the wrong way round, by the exact predicate alone; every cell positively
+// oriented. Pairs with a cell that is split or left out do not count.
+std::size_t count_order_violations(const TetMesh& mesh, const Adjacency& adjacency, const ViewOrder& order, const Eye& eye);
 
 // Whether each cell is there exactly once, as a whole or as pieces that fill it to 1e-9 of its volume.
 bool is_complete(const TetMesh& mesh, const ViewOrder& order);

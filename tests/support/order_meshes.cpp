@@ -179,6 +179,31 @@ TetMesh spiral_stair(int steps) {
     return mesh;
 }
 
+namespace {
+
+// Turns the points in a ball about a vertical axis through its middle, by an angle that grows with height: the largest that just keeps all
+// cells positive.
+void whirl(TetMesh& mesh, const glm::dvec3& center, double radius) {
+    for (double angle = 9.0; angle > 0.1; angle *= 0.8) {
+        TetMesh turned = mesh;
+        for (auto& p : turned.points) {
+            const glm::dvec3 d = p - center;
+            const double share = glm::length(d) / radius;
+            if (share >= 1) continue;
+            const double a = angle * d.z / radius * (1 - share * share);
+            p = center + glm::dvec3(std::cos(a) * d.x - std::sin(a) * d.y, std::sin(a) * d.x + std::cos(a) * d.y, d.z);
+        }
+        const bool positive = std::all_of(turned.tets.begin(), turned.tets.end(), [&](const auto& t) {
+            return orientation(turned.points[t[0]], turned.points[t[1]], turned.points[t[2]], turned.points[t[3]]) > 0;
+        });
+        if (!positive) continue;
+        mesh = std::move(turned);
+        return;
+    }
+}
+
+}  // namespace
+
 TetMesh twisted_mesh(int n, int whirls, std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> inside(0.15, 0.85);
@@ -194,27 +219,13 @@ TetMesh twisted_mesh(int n, int whirls, std::uint64_t seed) {
         const auto inner = [](double x) { return x > 0 && x < 1; };
         if (inner(p.x) && inner(p.y) && inner(p.z)) p += step;
     }
-    for (int i = 0; i < whirls; ++i) {
-        const glm::dvec3 center = triple(inside);
-        const double radius = 8.0 / n;
-        // The angle that just keeps all cells positive, from strong to weak.
-        for (double angle = 9.0; angle > 0.1; angle *= 0.8) {
-            TetMesh turned = mesh;
-            for (auto& p : turned.points) {
-                const glm::dvec3 d = p - center;
-                const double share = glm::length(d) / radius;
-                if (share >= 1) continue;
-                const double a = angle * d.z / radius * (1 - share * share);
-                p = center + glm::dvec3(std::cos(a) * d.x - std::sin(a) * d.y, std::sin(a) * d.x + std::cos(a) * d.y, d.z);
-            }
-            const bool positive = std::all_of(turned.tets.begin(), turned.tets.end(), [&](const auto& t) {
-                return orientation(turned.points[t[0]], turned.points[t[1]], turned.points[t[2]], turned.points[t[3]]) > 0;
-            });
-            if (!positive) continue;
-            mesh = std::move(turned);
-            break;
-        }
-    }
+    for (int i = 0; i < whirls; ++i) whirl(mesh, triple(inside), 8.0 / n);
+    return mesh;
+}
+
+TetMesh twisted_cube(int n) {
+    TetMesh mesh = grid_mesh(n);
+    whirl(mesh, glm::dvec3(0.5), 0.499);
     return mesh;
 }
 

@@ -38,6 +38,9 @@ TetMesh spiral_stair(int steps);
 // cells stay positive. About one cell in twenty is in a cycle as seen along z.
 TetMesh twisted_mesh(int n, int whirls, std::uint64_t seed = 1);
 
+// A grid of n³ boxes whose points in the cube's inner ball are turned about the vertical axis likewise: it fills a convex body, and has cycles.
+TetMesh twisted_cube(int n);
+
 // grid_mesh(n, .2) and `each` flat cells of both kinds (between two cells, on the side of the cube), needles, lines and points among its
 // cells, and as many of its cells with their vertices in the wrong order. Cells are shuffled.
 TetMesh damaged_mesh(int n, int each, std::uint64_t seed = 1);
