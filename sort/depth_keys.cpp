@@ -33,38 +33,6 @@ std::size_t count_parts(std::size_t elements) {
     return std::max(std::min(parts_per_thread * threads, elements / smallest_part + 1), elements / largest_part + 1);
 }
 
-// How often each part has each digit, then where it puts the next one.
-class DigitCounts {
-public:
-    DigitCounts(std::size_t parts, std::uint32_t digits) : digits_(digits), counts_(parts * digits) {}
-
-    std::span<std::uint32_t> of(std::size_t part) { return std::span(counts_).subspan(part * digits_, digits_); }
-
-    // From counts to where each part's first element of a digit goes: behind all smaller digits and the earlier parts. Returns the sum.
-    std::size_t find_places() {
-        std::vector<std::uint32_t> sums(digits_);
-        for (std::size_t i = 0; i < counts_.size(); i += digits_) {
-            std::uint32_t* const counts = counts_.data() + i;
-            for (std::size_t digit = 0; digit < digits_; ++digit) {
-                const std::uint32_t here = counts[digit];
-                counts[digit] = sums[digit];
-                sums[digit] += here;
-            }
-        }
-        std::uint32_t sum = 0;
-        for (std::uint32_t& digit : sums) sum += std::exchange(digit, sum);
-        for (std::size_t i = 0; i < counts_.size(); i += digits_) {
-            std::uint32_t* const counts = counts_.data() + i;
-            for (std::size_t digit = 0; digit < digits_; ++digit) counts[digit] += sums[digit];
-        }
-        return sum;
-    }
-
-private:
-    std::size_t digits_;
-    std::vector<std::uint32_t> counts_;  // #parts by digits_
-};
-
 template <class Body>
 void for_each_part(std::size_t parts, Body body) {
     oneapi::tbb::parallel_for(std::size_t{0}, parts, body);
@@ -72,12 +40,33 @@ void for_each_part(std::size_t parts, Body body) {
 
 }  // namespace
 
+// Returns the sum of all counts.
+std::size_t DigitCounts::find_places() {
+    sums_.assign(digits_, 0);
+    for (std::size_t i = 0; i < counts_.size(); i += digits_) {
+        std::uint32_t* const counts = counts_.data() + i;
+        for (std::size_t digit = 0; digit < digits_; ++digit) {
+            const std::uint32_t here = counts[digit];
+            counts[digit] = sums_[digit];
+            sums_[digit] += here;
+        }
+    }
+    std::uint32_t sum = 0;
+    for (std::uint32_t& digit : sums_) sum += std::exchange(digit, sum);
+    for (std::size_t i = 0; i < counts_.size(); i += digits_) {
+        std::uint32_t* const counts = counts_.data() + i;
+        for (std::size_t digit = 0; digit < digits_; ++digit) counts[digit] += sums_[digit];
+    }
+    return sum;
+}
+
 std::span<std::uint32_t> KeySort::sort(std::size_t count, const FindKeys& find_keys) {
     keys_.resize(count);
     const std::size_t parts = count_parts(count);
     const auto first_of = [&](std::size_t part) { return count * part / parts; };
 
-    DigitCounts low(parts, low_digits);
+    DigitCounts &low = low_, &high = high_;
+    low.reset(parts, low_digits);
     for_each_part(parts, [&](std::size_t part) {
         const std::span<std::uint32_t> counts = low.of(part);
         for (std::size_t begin = first_of(part), end = first_of(part + 1); begin < end; begin += keys_per_block) {
@@ -110,7 +99,7 @@ std::span<std::uint32_t> KeySort::sort(std::size_t count, const FindKeys& find_k
     const auto begin_of = [&](std::size_t part) {
         return first_digit[part] == 0 ? std::size_t{0} : std::size_t{end_of_digit(first_digit[part] - 1)};
     };
-    DigitCounts high(parts, high_digits);
+    high.reset(parts, high_digits);
     for_each_part(parts, [&](std::size_t part) {
         std::uint32_t* const counts = high.of(part).data();
         for (std::size_t i = begin_of(part), end = begin_of(part + 1); i < end; ++i) ++counts[entries[i] >> number_bits];
