@@ -3,6 +3,7 @@
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -57,8 +58,8 @@ public:
             bytes_ = tables_->bytes;
             shading_.tables = &*tables_;
         }
-        shading_.opaque = static_cast<float>(1.0 - hidden);
         may_be_opaque_ = transfer.max_extinction(0.0, 1.0) * longest_segment > -std::log(hidden);
+        shading_.opaque = may_be_opaque_ ? static_cast<float>(1.0 - hidden) : 1.0F;
     }
 
     const Shading& shading() const { return shading_; }
@@ -99,7 +100,7 @@ private:
     Image render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out);
     enum class Drawing { by_cells, by_pixels, nearest_surfaces };
     void draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics);
-    bool may_be_opaque() const;
+    bool surfaces_may_hide() const;
 
     oneapi::tbb::task_arena arena_;
     std::optional<PreparedScene> prepared_;
@@ -157,19 +158,35 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     Image image(size.width, size.height);
     statistics.ms.plan = total.ms();
 
+    const auto region_at = [&](int x, int y) {
+        constexpr int side = region_side * tile_side;
+        return Region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
+    };
+    const Region first = region_at(0, 0);
+    const bool single = first.width == size.width && first.height == size.height;
+    const bool may_be_opaque = surfaces_may_hide() || classification_->may_be_opaque();
+
+    // Points and boxes do not depend on the order: they are found beside it, where part of a sort leaves cores idle.
     const Stopwatch sort;
     OrderReport order_report;
     const Drawing drawing = prepared_->only_opaque_surfaces() ? Drawing::nearest_surfaces
                             : quality.order_per_pixel         ? Drawing::by_pixels
                                                               : Drawing::by_cells;
-    // Pixels that sort their own fragments want cells nearly sorted, no more.
     ViewOrder order;
-    if (drawing != Drawing::nearest_surfaces)
-        order = prepared_->order(camera, size, drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order, &order_report);
+    oneapi::tbb::parallel_invoke(
+        [&] {
+            // Pixels that sort their own fragments want cells nearly sorted, no more; the nearest surfaces want none.
+            if (drawing != Drawing::nearest_surfaces)
+                order = prepared_->order(camera, size, drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order, &order_report);
+        },
+        [&] {
+            mesh_.set_view(camera, size);
+            if (single && (drawing == Drawing::by_pixels || (drawing == Drawing::by_cells && !may_be_opaque)))
+                bins_.find_cells(mesh_.cells(), first);
+        });
     statistics.ms.sort = sort.ms();
 
     const Stopwatch projecting;
-    mesh_.set_view(camera, size);
     // In any order; nearly sorted ones hide most of each other.
     if (drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(prepared_->surfaces()->crossed());
     const auto items = mesh_.cut(order);
@@ -177,11 +194,10 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     if (prepared_->surfaces()) trails_.assign(image.pixels.size(), {});
     statistics.ms.project = projecting.ms();
 
-    constexpr int side = region_side * tile_side;
-    for (int y = 0; y < size.height; y += side)
-        for (int x = 0; x < size.width; x += side) {
-            const Region region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, drawing != Drawing::nearest_surfaces && may_be_opaque());
+    for (int y = 0; y < size.height; y += first.height)
+        for (int x = 0; x < size.width; x += first.width) {
+            const Region region = region_at(x, y);
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, drawing != Drawing::nearest_surfaces && may_be_opaque);
             draw(image, region, drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }
@@ -212,17 +228,19 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     return image;
 }
 
-bool CpuRenderer::may_be_opaque() const {
+// Whether some isosurface hides what is behind.
+bool CpuRenderer::surfaces_may_hide() const {
     const PreparedSurfaces* surfaces = prepared_->surfaces();
     const auto is_opaque = [](const IsoSurface& surface) { return surface.opacity == 1; };
-    return classification_->may_be_opaque() ||
-           (surfaces && std::ranges::any_of(surfaces->scene().isosurfaces.surfaces(), is_opaque));
+    return surfaces && std::ranges::any_of(surfaces->scene().isosurfaces.surfaces(), is_opaque);
 }
 
 // Slab by slab from the front, each tile by one task: the same order of operations for any number of threads.
 void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics) {
     const int columns = (region.width + tile_side - 1) / tile_side, rows = (region.height + tile_side - 1) / tile_side;
     std::atomic<std::size_t> fragments = 0;
+    Shading shading = classification_->shading();
+    if (surfaces_may_hide()) shading.opaque = std::min(shading.opaque, static_cast<float>(1.0 - hidden_share));
     for (;;) {
         const Stopwatch filling;
         const bool some = drawing == Drawing::by_pixels ? bins_.next_tiles() : bins_.next();
@@ -242,10 +260,10 @@ void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Stat
                     tile.trails = &trails_[static_cast<std::size_t>(y) * tile.stride + static_cast<std::size_t>(x)];
                 switch (drawing) {
                     case Drawing::by_cells:
-                        fragments += draw_tile(mesh_.cells(), classification_->shading(), tile, items);
+                        fragments += draw_tile(mesh_.cells(), shading, tile, items);
                         break;
                     case Drawing::by_pixels:
-                        fragments += draw_tile_by_pixels(mesh_.cells(), classification_->shading(), tile, items, pending_.local());
+                        fragments += draw_tile_by_pixels(mesh_.cells(), shading, tile, items, pending_.local());
                         break;
                     case Drawing::nearest_surfaces:
                         tile.full = nullptr;  // what comes later may be nearer

@@ -134,6 +134,7 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
         if (behind) near_points = true;
     });
     near_points_ = near_points;
+    cells_.points = points_;
 }
 
 // Perspective cannot show what lies behind the near plane.
