@@ -51,7 +51,7 @@ struct Statistics {
     std::size_t table_bytes = 0;  // memory of its tables
     std::string backend;          // "gl_osmesa", "cpu"
     std::string backend_version;  // what the driver says of itself; the instruction set and the threads
-    std::string order;            // method of sorting: "mpvo"
+    std::string order;            // method of sorting: "mpvo"; "pixel", "none": cells needed no order
     bool order_exact = false;     // proven for this mesh and view
     std::optional<OrderCheck> order_check;  // when it was asked for
     std::optional<double> error;  // measured error, when it was measured

@@ -219,10 +219,10 @@ void render_pictures(const RenderOptions& options) {
             {"cellproj order", statistics.order},
             {"cellproj backend", statistics.backend + ", " + statistics.backend_version}};
         if (scene.opacity_field) text["cellproj opacity field"] = scene.opacity_field->name;
-        if (!annotator.note().empty()) text["cellproj note"] = annotator.note();
         for (const std::string& surface : options.scene.iso.surfaces)
             text["cellproj isosurfaces"] += "--iso " + surface + " ";
         if (options.scene.iso.any()) text["cellproj isosurfaces"] += "--shading " + options.scene.iso.shading;
+        if (!annotator.note().empty()) text["cellproj note"] = annotator.note();
         warn(image, statistics, file);
         write(annotator.compose(std::move(image), cameras[i]), file, options, text);
         statistics.ms.write = writing.ms();

@@ -13,7 +13,7 @@ namespace cellproj::cpu {
 // `threads`: how many to use at most, 0 for all that the process may use. The same picture, bit for bit, for any number. What
 // does not depend on the view is kept; a second picture allocates nothing but itself.
 //
-// Draws every method that finds light for each pixel; Error (option) for light at vertices and for other targets than rgba32f.
+// Draws isosurfaces (render/README.md), and every method that finds light for each pixel; Error (option) for light at vertices and for other targets than rgba32f.
 std::unique_ptr<Renderer> make_renderer(int threads);
 
 }  // namespace cellproj::cpu

@@ -30,6 +30,8 @@ struct SurfaceTile {
     PreciseCell cell;                       // the one at hand, if it needs float64
 };
 
+enum class Precision { float32, float64, float64_alone };
+
 // Which cells are found again in float64: those that are crossed, and all with a face so steep that float32 does not tell on which side of
 // it a ray is. float32 may have given fragments of the latter to another cell, so that they try every pixel of their box.
 HWY_INLINE Precision precision_of(const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile) {
@@ -44,9 +46,7 @@ HWY_INLINE Precision precision_of(const ScreenCells& cells, const CellPlanes& pl
 
 // How much thinner than nothing a segment of float32 may be, to be tried in float64.
 template <bool perspective>
-HWY_INLINE float margin_of(const CellPlanes& planes, std::size_t k, Precision precision) {
-    if (precision == Precision::float32) return 0.0F;
-    if (precision == Precision::float64_alone || is_flat(planes, k)) return 1e38F;
+HWY_INLINE float margin_of(const CellPlanes& planes, std::size_t k) {
     return 1e-3F * (planes.nearest[k] - planes.farthest[k]) + 1e-6F * (perspective ? planes.base[k] : 1.0F);
 }
 
@@ -115,21 +115,10 @@ HWY_INLINE bool write_precisely(const ScreenCells& cells, const PreciseCell& cel
     return true;
 }
 
-// The ends of the item's fragments, from number `begin` on.
+// The item's fragments from number `begin` on, of which only the pixels count, again in float64.
 template <bool perspective>
-HWY_NOINLINE void complete_fragments(const ScreenCells& cells, std::uint32_t item, Precision precision, std::size_t begin, TileState& tile) {
+HWY_NOINLINE void find_precisely(const ScreenCells& cells, std::uint32_t item, std::size_t begin, TileState& tile) {
     Fragments& f = tile.fragments;
-    if (precision == Precision::float32) {
-        const std::int32_t level = cells.surfaces->levels[item];
-        for (std::size_t i = begin; i < f.count; ++i) {
-            SurfaceEnds& ends = tile.surfaces->ends[i];
-            ends.item = item;
-            ends.level_front = ends.level_back = level;
-            ends.near_front = f.near_front[i];
-            ends.near_back = f.near_back[i];
-        }
-        return;
-    }
     const PreciseCell& cell = tile.surfaces->cell;
     const int towards = cell.towards_eye[0] + cell.towards_eye[1] + cell.towards_eye[2] + cell.towards_eye[3];
     const std::size_t end = towards % 4 == 0 ? begin : f.count;  // none where all faces are seen edge-on
@@ -157,6 +146,38 @@ HWY_NOINLINE void complete_fragments(const ScreenCells& cells, std::uint32_t ite
     f.count = kept;
 }
 
+// All pixels of the cell's box, to be tried.
+HWY_INLINE void add_box(const CellPlanes& planes, std::size_t k, Fragments& f) {
+    for (std::int32_t y = 0; y < planes.height[k]; ++y)
+        for (std::int32_t x = 0; x < planes.width[k]; ++x) f.pixel[f.count++] = planes.left[k] + x + tile_side * (planes.top[k] + y);
+}
+
+template <bool perspective, bool keyed, class D>
+HWY_NOINLINE void add_crossed_cell(D d, const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile) {
+    Fragments& f = tile.fragments;
+    const std::size_t begin = f.count;
+    const Precision precision = precision_of(cells, planes, k, item, tile);
+    const bool has_volume = planes.front_faces[k] != 0 && planes.front_faces[k] != 15;
+    if (precision == Precision::float64_alone || (precision == Precision::float64 && !has_volume)) {
+        add_box(planes, k, f);
+    } else if (has_volume) {
+        find_hits<true>(planes, k, tile.hits, precision == Precision::float64 ? margin_of<perspective>(planes, k) : 0.0F);
+        add_fragments<perspective, false, keyed>(d, cells.view, planes, tile.hits, f);
+    }
+    if (precision != Precision::float32) {
+        find_precisely<perspective>(cells, item, begin, tile);
+        return;
+    }
+    const std::int32_t level = cells.surfaces->levels[item];
+    for (std::size_t i = begin; i < f.count; ++i) {  // tile.hits still holds what they were made of
+        SurfaceEnds& ends = tile.surfaces->ends[i];
+        ends.item = item;
+        ends.level_front = ends.level_back = level;
+        ends.near_front = planes.base[k] + tile.hits.front[i - begin];
+        ends.near_back = planes.base[k] + tile.hits.back[i - begin];
+    }
+}
+
 // For pixels that sort their own fragments.
 HWY_INLINE void append_ends(const TileState& tile, PendingFragments& pending) {
     const SurfaceEnds* ends = tile.surfaces->ends;
@@ -179,7 +200,8 @@ HWY_NOINLINE void composite_pieces(D d, const ScreenCells& cells, const Shading&
     if (cells.surfaces->medium) empty_last_vector(d, s.pieces);
     for (std::size_t begin = 0; begin < s.pieces.count; begin += lanes) {
         if (cells.surfaces->medium) {
-            const auto l = light_of_fragments(d, cells, shading, tile, s.pieces, begin);
+            const auto l = shade(d, shading, false, hn::Load(d, s.pieces.front + begin), hn::Load(d, s.pieces.back + begin),
+                                 length_along_ray(d, cells.view, tile, s.pieces, begin));
             hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
         }
         for (std::size_t i = 0; i < HWY_MIN(lanes, s.pieces.count - begin); ++i) {
@@ -344,17 +366,6 @@ HWY_INLINE bool is_hidden(const CellPlanes& planes, std::size_t k, const Nearest
     return true;
 }
 
-// Fragments that begin behind what their pixel holds, beyond the rounding of float32.
-HWY_INLINE void leave_hidden_out(Fragments& f, const NearestHits& nearest) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < f.count; ++i) {
-        const float hit = nearest.nearness[f.pixel[i]];
-        f.pixel[kept] = f.pixel[i];
-        kept += f.near_front[i] + 1e-5F * (1.0F + std::abs(f.near_front[i])) >= hit;
-    }
-    f.count = kept;
-}
-
 // Items come back to front, by and large: taken from the last one on, most of them are hidden.
 template <bool perspective>
 HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target, std::span<const std::uint32_t> items, TileState& tile) {
@@ -376,11 +387,7 @@ HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target
         make_planes<perspective, false>(d, cells, group, count, tile.x, tile.y, target.width, target.height, tile.corners, tile.planes);
         for (std::size_t k = 0; k < count; ++k) {
             if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0 || is_hidden(tile.planes, k, nearest)) continue;
-            const Precision precision = precision_of(cells, tile.planes, k, group[k], tile);
-            find_hits<true>(tile.planes, k, tile.hits, margin_of<perspective>(tile.planes, k, precision));
-            add_fragments<perspective, false, false, true>(d, cells.view, tile.planes, tile.hits, tile.fragments);
-            if (precision != Precision::float64_alone) leave_hidden_out(tile.fragments, nearest);
-            complete_fragments<perspective>(cells, group[k], precision, 0, tile);
+            add_crossed_cell<perspective, false>(d, cells, tile.planes, k, group[k], tile);
             fragments += tile.fragments.count;
             for (std::size_t i = 0; i < tile.fragments.count; ++i) keep_nearest<perspective>(*cells.surfaces, tile, i, nearest);
             tile.fragments.clear();

@@ -38,7 +38,6 @@ struct Fragments {
     HWY_ALIGN float length[length_of_list];                       // along the axis of the view [scene units]
     HWY_ALIGN float key[length_of_list];                          // for pixels that sort: the middle's nearness
     HWY_ALIGN std::int32_t pixel[length_of_list];                 // x + tile_side·y
-    HWY_ALIGN float near_front[length_of_list], near_back[length_of_list];  // with isosurfaces: whole nearness of both ends
     std::size_t count = 0;
     float lowest = 1, highest = 0;  // scalars of all of them
 
@@ -64,13 +63,9 @@ struct TileState {
     SurfaceTile* surfaces = nullptr;                 // with isosurfaces
 };
 
-// How a cell's fragments are told in scenes with isosurfaces.
-enum class Precision { float32, float64, float64_alone };
-Precision precision_of(const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile);
-template <bool perspective>
-float margin_of(const CellPlanes& planes, std::size_t k, Precision precision);
-template <bool perspective>
-void complete_fragments(const ScreenCells& cells, std::uint32_t item, Precision precision, std::size_t begin, TileState& tile);
+// The fragments of one cell of the group, with all that isosurfaces want of them.
+template <bool perspective, bool keyed, class D>
+void add_crossed_cell(D d, const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile);
 template <bool perspective, class D>
 void composite_with_surfaces(D d, const ScreenCells& cells, const Shading& shading, TileState& tile);
 void append_ends(const TileState& tile, PendingFragments& pending);
@@ -101,6 +96,20 @@ HWY_INLINE void blend(D d, const LightOf<V>& l, const std::int32_t* pixel, std::
     }
 }
 
+// The lengths of a vector of fragments, from the axis of the view to the ray.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V length_along_ray(D d, const View& view, const TileState& tile, const Fragments& f, std::size_t begin) {
+    const hn::RebindToSigned<D> di;
+    const V length = hn::Load(d, f.length + begin);
+    if (!view.perspective) return length;
+    const V one = hn::Set(d, 1.0F), unit = hn::Set(d, view.unit_per_pixel);
+    const auto pixel = hn::Load(di, f.pixel + begin);
+    const V x = hn::Add(hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_side - 1))), hn::Set(d, tile.x));
+    const V y = hn::Add(hn::ConvertTo(d, hn::ShiftRight<5>(pixel)), hn::Set(d, tile.y));
+    const V u = hn::Mul(x, unit), v = hn::Mul(y, unit);
+    return hn::Mul(length, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
+}
+
 // The last vector of fragments may be part empty.
 template <class D>
 HWY_INLINE void empty_last_vector(D d, Fragments& f) {
@@ -110,34 +119,16 @@ HWY_INLINE void empty_last_vector(D d, Fragments& f) {
     }
 }
 
-// The lengths of a vector of fragments, along their rays.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V lengths_of(D d, const View& view, const TileState& tile, const Fragments& f, std::size_t begin) {
-    const hn::RebindToSigned<D> di;
-    const V length = hn::Load(d, f.length + begin);
-    if (!view.perspective) return length;
-    const auto pixel = hn::Load(di, f.pixel + begin);
-    const V x = hn::Add(hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_side - 1))), hn::Set(d, tile.x));
-    const V y = hn::Add(hn::ConvertTo(d, hn::ShiftRight<column_shift / 2>(pixel)), hn::Set(d, tile.y));
-    const V unit = hn::Set(d, view.unit_per_pixel), u = hn::Mul(x, unit), v = hn::Mul(y, unit);
-    return hn::Mul(length, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, hn::Set(d, 1.0F)))));
-}
-
-// The light of a vector of fragments.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE LightOf<V> light_of_fragments(D d, const ScreenCells& cells, const Shading& shading, const TileState& tile, const Fragments& f,
-                                         std::size_t begin) {
-    return shade(d, shading, !cells.cell_scalars.empty(), hn::Load(d, f.front + begin), hn::Load(d, f.back + begin),
-                 lengths_of(d, cells.view, tile, f, begin));
-}
-
-// Composites the fragments behind what is there, in their order. light_of(begin): that of the vector of fragments from there on.
-template <class D, class LightOfVector>
-HWY_INLINE void composite_as(D d, TileState& tile, const LightOfVector& light_of) {
+// Composites the fragments behind what is there, in their order. light_of(s_f, s_b, length): scalars 0..1, lengths along the ray.
+template <class D, class LightOfSegments>
+HWY_INLINE void composite_as(D d, const View& view, TileState& tile, const LightOfSegments& light_of) {
     const Fragments& f = tile.fragments;
     const std::size_t lanes = hn::Lanes(d);
-    for (std::size_t begin = 0; begin < f.count; begin += lanes)
-        blend(d, light_of(begin), f.pixel + begin, HWY_MIN(lanes, f.count - begin), tile);
+    for (std::size_t begin = 0; begin < f.count; begin += lanes) {
+        const auto length = length_along_ray(d, view, tile, f, begin);
+        blend(d, light_of(hn::Load(d, f.front + begin), hn::Load(d, f.back + begin), length), f.pixel + begin, HWY_MIN(lanes, f.count - begin),
+              tile);
+    }
 }
 
 // The piece that all of the fragments lie in, or -1.
@@ -157,38 +148,25 @@ HWY_NOINLINE void composite(D d, const ScreenCells& cells, const Shading& shadin
     const std::int32_t piece = shading.pieces && shading.pieces->mean_place && !constant && !shading.half_opacity ? common_piece(*shading.pieces, f) : -1;
     if (piece >= 0) {
         const LightInPiece<D> light_in(d, *shading.pieces, piece);
-        composite_as(d, tile, [&](std::size_t begin) HWY_ATTR {
-            const V s_f = hn::Load(d, f.front + begin), s_b = hn::Load(d, f.back + begin), length = lengths_of(d, cells.view, tile, f, begin);
+        composite_as(d, cells.view, tile, [&](V s_f, V s_b, V length) HWY_ATTR {
             V depth;
             const LightOf<V> light = light_in(s_f, s_b, length, depth);
             if (HWY_LIKELY(hn::AllTrue(d, hn::Le(depth, hn::Set(d, mean_place_depth))))) return light;
             return light_of_walk(d, *shading.pieces, s_f, s_b, length);
         });
     } else {
-        composite_as(d, tile, [&](std::size_t begin) HWY_ATTR { return light_of_fragments(d, cells, shading, tile, f, begin); });
+        composite_as(d, cells.view, tile, [&](V s_f, V s_b, V length) HWY_ATTR { return shade(d, shading, constant, s_f, s_b, length); });
     }
     f.clear();
 }
-
-template <bool perspective, bool surfaces, class D>
-HWY_INLINE void composite_all(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
-    if constexpr (surfaces) {
-        composite_with_surfaces<perspective>(d, cells, shading, tile);
-    } else {
-        composite(d, cells, shading, tile);
-    }
-}
-
-// To float32 all faces of the cell look the same way.
-HWY_INLINE bool is_flat(const CellPlanes& cell, std::size_t k) { return cell.front_faces[k] == 0 || cell.front_faces[k] == 15; }
 
 // The faces of a cell, by the bits of those that look towards the eye: these first.
 inline constexpr std::uint8_t faces_by_side[16][4]{{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 1, 3},
                                                    {1, 2, 0, 3}, {0, 1, 2, 3}, {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
                                                    {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
 
-// The hits of one cell of the group, the one in column k. At least one of its faces looks towards the eye, and one away. `margin`, with
-// isosurfaces: how much thinner than nothing a segment may be.
+// The hits of one cell of the group, the one in column k. At least one of its faces looks towards the eye, and one away.
+// `margin`, with isosurfaces: how much thinner than nothing a segment may be.
 template <bool surfaces>
 HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits, float margin = 0.0F) {
     // Lanes are pixels: blocks of up to 4 by 2. Of larger ones a cell would miss more, and packing them costs as much more.
@@ -246,7 +224,7 @@ HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits, flo
 }
 
 // The hits of the group as fragments, of which there is room for as many.
-template <bool perspective, bool constant, bool keyed, bool surfaces, class D>
+template <bool perspective, bool constant, bool keyed, class D>
 HWY_NOINLINE void add_fragments(D d, const View& view, const CellPlanes& cell, Hits& hits, Fragments& fragments) {
     const hn::RebindToSigned<D> di;
     using V = hn::Vec<D>;
@@ -279,11 +257,6 @@ HWY_NOINLINE void add_fragments(D d, const View& view, const CellPlanes& cell, H
         }
         hn::StoreU(length, d, f.length + to);
         if constexpr (keyed) hn::StoreU(hn::MulAdd(hn::Set(d, 0.5F), hn::Add(front, back), of_cell(cell.base)), d, f.key + to);
-        if constexpr (surfaces) {
-            const V base = of_cell(cell.base);
-            hn::StoreU(hn::Add(base, front), d, f.near_front + to);
-            hn::StoreU(hn::Add(base, back), d, f.near_back + to);
-        }
         const V first = of_cell(cell.first_scalar);
         if constexpr (constant) {
             hn::StoreU(first, d, f.front + to);
@@ -341,25 +314,31 @@ HWY_INLINE void add_group(D d, const ScreenCells& cells, const std::uint32_t* gr
                                        tile.planes);
     const auto finish_hits = [&]() HWY_ATTR {
         if (tile.fragments.count + tile.hits.count > Fragments::capacity) make_room();
-        add_fragments<perspective, constant, keyed, surfaces>(d, cells.view, tile.planes, tile.hits, tile.fragments);
+        add_fragments<perspective, constant, keyed>(d, cells.view, tile.planes, tile.hits, tile.fragments);
     };
     for (std::size_t k = 0; k < count; ++k) {
         if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0) continue;
+        if (!surfaces && (tile.planes.front_faces[k] == 0 || tile.planes.front_faces[k] == 15)) continue;  // no volume
         if (tile.some_closed && !meets_open_pixel(tile, tile.planes, k)) continue;
         const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
-        if (tile.hits.count + most > Hits::capacity) finish_hits();
-        if constexpr (surfaces) {  // one by one: many are found again in float64
-            const Precision precision = precision_of(cells, tile.planes, k, group[k], tile);
-            if (precision == Precision::float32 && is_flat(tile.planes, k)) continue;
-            find_hits<true>(tile.planes, k, tile.hits, margin_of<perspective>(tile.planes, k, precision));
-            const std::size_t hits = tile.hits.count;
-            finish_hits();
-            complete_fragments<perspective>(cells, group[k], precision, tile.fragments.count - hits, tile);
-        } else if (!is_flat(tile.planes, k)) {
-            find_hits<false>(tile.planes, k, tile.hits);
+        if constexpr (surfaces) {
+            if (tile.fragments.count + most > Fragments::capacity) make_room();
+            add_crossed_cell<perspective, keyed>(d, cells, tile.planes, k, group[k], tile);
+            continue;
         }
+        if (tile.hits.count + most > Hits::capacity) finish_hits();
+        find_hits<false>(tile.planes, k, tile.hits);
     }
     finish_hits();
+}
+
+template <bool perspective, bool surfaces, class D>
+HWY_INLINE void composite_any(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
+    if constexpr (surfaces) {
+        composite_with_surfaces<perspective>(d, cells, shading, tile);
+    } else {
+        composite(d, cells, shading, tile);
+    }
 }
 
 template <bool perspective, bool constant, bool surfaces>
@@ -378,10 +357,10 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
         for (std::size_t i = 0; i < HWY_MIN(lanes, left); ++i) hwy::Prefetch(cells.corners(items[left - 1 - i]).data());
         return count;
     };
-    const auto empty = [&]() HWY_ATTR {
+    const auto composite_all = [&]() HWY_ATTR {
         fragments += tile.fragments.count;
         since_closing += tile.fragments.count;
-        composite_all<perspective, surfaces>(d, cells, shading, tile);
+        composite_any<perspective, surfaces>(d, cells, shading, tile);
     };
     std::size_t next_count = read(next);
     while (seen && next_count > 0) {
@@ -389,13 +368,13 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
         std::memcpy(group, next, sizeof group);
         next_count = read(next);
         prefetch_points(cells, next, next_count);
-        add_group<perspective, constant, false, surfaces>(d, cells, group, count, target, tile, empty);
+        add_group<perspective, constant, false, surfaces>(d, cells, group, count, target, tile, composite_all);
         if (since_closing > 4 * Fragments::capacity) {
             since_closing = 0;
             seen = close_pixels(tile, shading.opaque, target.width, target.height);
         }
     }
-    empty();
+    composite_all();
     return fragments;
 }
 
@@ -469,10 +448,10 @@ HWY_NOINLINE void composite_pending(D d, const ScreenCells& cells, const Shading
             f.lowest = HWY_MIN(f.lowest, HWY_MIN(f.front[f.count], f.back[f.count]));
             f.highest = HWY_MAX(f.highest, HWY_MAX(f.front[f.count], f.back[f.count]));
             if constexpr (surfaces) set_ends(pending.ends[fragment], f.count, tile);
-            if (++f.count == Fragments::capacity) composite_all<perspective, surfaces>(d, cells, shading, tile);
+            if (++f.count == Fragments::capacity) composite_any<perspective, surfaces>(d, cells, shading, tile);
         }
     }
-    composite_all<perspective, surfaces>(d, cells, shading, tile);
+    composite_any<perspective, surfaces>(d, cells, shading, tile);
     for (std::size_t i = 0; i < count; ++i) {
         if (pending.key[i] >= nearest) continue;
         pending.front[kept] = pending.front[i];
