@@ -460,7 +460,7 @@ TEST(RaySurfaces, AreRefusedWhereTheyCannotBe) {
 TEST(RaySurfaces, AreRefusedByRenderersThatDoNotDrawThem) {
     const Scene scene = scene_of(grid_mesh(2), linear, ramp());
     const Camera camera = view_of_unit_cube(Camera::Projection::parallel);
-    for (const Backend backend : {Backend::gl_osmesa, Backend::cpu}) {
+    for (const Backend backend : {Backend::cpu}) {
         const auto renderer = make_renderer(backend);
         EXPECT_EQ(kind_of([&] { renderer->prepare(with(scene, surfaces({{0.5}}))); }), ErrorKind::option);
         EXPECT_EQ(kind_of([&] { renderer->render(with(scene, surfaces({{0.5}})), camera, {8, 8}); }), ErrorKind::option);

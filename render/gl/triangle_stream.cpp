@@ -31,12 +31,30 @@ constexpr std::array<VertexAttribute, 4> lit_attributes{{{0, 2, offsetof(LitVert
                                                          {1, 1, offsetof(LitVertex, share)},
                                                          {2, 3, offsetof(LitVertex, color)},
                                                          {3, 3, offsetof(LitVertex, weight)}}};
+constexpr std::size_t half_face = sizeof(SurfaceFace) / 2;
+constexpr std::array<VertexAttribute, 16> surface_attributes{{{0, 2, offsetof(SurfaceVertex, x)},
+                                                             {1, 3, offsetof(SurfaceVertex, ridges)},
+                                                             {2, 4, offsetof(SurfaceVertex, faces)},
+                                                             {3, 4, offsetof(SurfaceVertex, faces) + half_face},
+                                                             {4, 4, offsetof(SurfaceVertex, faces[1])},
+                                                             {5, 4, offsetof(SurfaceVertex, faces[1]) + half_face},
+                                                             {6, 4, offsetof(SurfaceVertex, faces[2])},
+                                                             {7, 4, offsetof(SurfaceVertex, faces[2]) + half_face},
+                                                             {8, 4, offsetof(SurfaceVertex, faces[3])},
+                                                             {9, 4, offsetof(SurfaceVertex, faces[3]) + half_face},
+                                                             {10, 4, offsetof(SurfaceVertex, scalars)},
+                                                             {11, 3, offsetof(SurfaceVertex, first)},
+                                                             {12, 3, offsetof(SurfaceVertex, gradient[0])},
+                                                             {13, 3, offsetof(SurfaceVertex, gradient[1])},
+                                                             {14, 3, offsetof(SurfaceVertex, gradient[2])},
+                                                             {15, 3, offsetof(SurfaceVertex, gradient[3])}}};
 
 }  // namespace
 
 std::span<const VertexAttribute> vertex_attributes(const StreamVertex*) { return stream_attributes; }
 std::span<const VertexAttribute> vertex_attributes(const TwoFieldVertex*) { return two_field_attributes; }
 std::span<const VertexAttribute> vertex_attributes(const LitVertex*) { return lit_attributes; }
+std::span<const VertexAttribute> vertex_attributes(const SurfaceVertex*) { return surface_attributes; }
 
 TriangleStream::TriangleStream(std::size_t vertex_bytes, std::span<const VertexAttribute> attributes)
     : vertex_bytes_(vertex_bytes) {

@@ -1,0 +1,33 @@
+#version 450 core
+// SPDX-License-Identifier: BSD-3-Clause
+// Silhouettes of cells that isosurfaces may cross (render/surface_vertex.hpp): positions are final and w = 1. What belongs to a
+// triangle comes from its last vertex.
+layout(location = 0) in vec2 position;      // clip space
+layout(location = 1) in vec3 ridges;
+layout(location = 2) in vec4 faces[8];      // two for each face, the base first: nearness, scalar term; planes and x, y of the origin
+layout(location = 10) in vec4 scalars;      // of the corners opposite to the faces
+layout(location = 11) in vec3 cell;         // first and last surface, depth range (negative: base at the back)
+layout(location = 12) in vec3 gradient[4];  // at the frame's place, and what it changes by along x, y, z
+
+out vec3 v_ridges;
+flat out vec4 v_faces[8];
+flat out vec4 v_scalars;
+flat out vec3 v_cell;
+#ifdef LIT
+flat out vec3 v_gradient[4];
+#endif
+
+// What the method wants to know of a cell between two scalars.
+void prepare_cell(float low, float high);
+
+void main() {
+    prepare_cell(min(min(scalars.x, scalars.y), min(scalars.z, scalars.w)), max(max(scalars.x, scalars.y), max(scalars.z, scalars.w)));
+    v_ridges = ridges;
+    v_faces = faces;
+    v_scalars = scalars;
+    v_cell = cell;
+#ifdef LIT
+    v_gradient = gradient;
+#endif
+    gl_Position = vec4(position, 0.0, 1.0);
+}
