@@ -215,6 +215,7 @@ bool CellStream::load(CellId cell, Corners& corners) const {
         if (transform_.perspective() && p.depth == 0.0) return false;
         set_corner(corners, i, p, scalar, opacity_scalar(cell, tet[i]));
     }
+    corners.whole = true;
     return true;
 }
 
@@ -381,7 +382,7 @@ public:
         vertex_.first = static_cast<float>(range.first);
         vertex_.last = static_cast<float>(range.last);
         vertex_.depth_range = static_cast<float>(outline_.base_is_front ? span.far - span.near : span.near - span.far);
-        if (range.first < range.last) set_gradient(cell, surfaces, frame);
+        if (range.first < range.last) set_gradient(corners.whole ? places_of(corners, frame) : places_of(cell, frame), surfaces.gradients(cell));
     }
 
     const Silhouette& silhouette() const { return outline_; }
@@ -407,11 +408,28 @@ public:
     }
 
 private:
-    void set_gradient(CellId cell, const SurfaceCells& surfaces, const NearnessFrame& frame) {
+    // From the frame's farthest point on. Where the rasterizer has the corners: in a sliver, a place beside it has other weights.
+    std::array<glm::dvec3, 4> places_of(const Corners& corners, const NearnessFrame& frame) const {
+        const ScreenTransform& transform = stream_.transform_;
+        std::array<glm::dvec3, 4> places;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const ScreenVertex& v = corners.vertices[i];
+            const double depth = frame.perspective ? 1.0 / v.depth : v.depth;
+            const glm::dvec2 across = (v.position - transform.principal_point()) / transform.pixels_per_unit();
+            places[i] = {across * (frame.perspective ? depth : 1.0), depth - frame.far_depth()};
+        }
+        return places;
+    }
+    // A cell of which this is a piece lies partly where nothing is on the screen.
+    std::array<glm::dvec3, 4> places_of(CellId cell, const NearnessFrame& frame) const {
         const EyeCorners corners = stream_.eye_corners(cell);
         std::array<glm::dvec3, 4> places;
         for (std::size_t i = 0; i < 4; ++i) places[i] = corners.vertices[i].position - glm::dvec3(0.0, 0.0, frame.far_depth());
-        const GradientMap map = make_gradient_map(places, surfaces.gradients(cell));
+        return places;
+    }
+
+    void set_gradient(const std::array<glm::dvec3, 4>& places, const std::array<glm::dvec3, 4>& gradients) {
+        const GradientMap map = make_gradient_map(places, gradients);
         for (int axis = 0; axis < 3; ++axis) {
             vertex_.gradient[0][axis] = static_cast<float>(map.value[axis]);
             for (std::size_t slope = 0; slope < 3; ++slope) vertex_.gradient[slope + 1][axis] = static_cast<float>(map.slopes[slope][axis]);

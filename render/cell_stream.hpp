@@ -97,6 +97,7 @@ private:
         std::array<ScreenVertex, 4> vertices;  // on the rasterizer's grid
         std::array<glm::dvec2, 4> moved;       // how far to get there [pixels]
         std::array<double, 4> opacity_scalars; // scalar terms of the opacity field, where there is one
+        bool whole = false;                    // those of a cell, in its order, not of a piece of it
 
         std::array<ScreenVertex, 4> with_opacity_scalars() const;
     };
