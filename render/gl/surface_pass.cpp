@@ -71,7 +71,7 @@ SurfacePass::SurfacePass(const Scene& scene, const SceneUnits& units)
     : surfaces_(scene.surfaces),
       cells_(scene, units),
       opaque_(scene.surfaces->isosurfaces.opaque()),
-      lit_(scene.surfaces->shading != Shading::unlit),
+      shading_(scene.surfaces->shading),
       list_(upload(scene.surfaces->isosurfaces, cells_.thresholds(), units)),
       lights_(upload(scene.surfaces->lighting.lights)) {}
 
@@ -90,24 +90,26 @@ void SurfacePass::set_visible(std::span<const std::uint8_t> visible) {
 
 std::string SurfacePass::defines(bool perspective) const {
     return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (has_medium_ ? "#define MEDIUM\n" : "") +
-           (lit_ ? "#define LIT\n" : "") + (needs_order() ? "" : "#define NEAREST\n");
+           (shading_ != Shading::unlit ? "#define LIT\n" : "") +
+           (shading_ == Shading::smooth ? "#define SMOOTH\n" : "") + (needs_order() ? "" : "#define NEAREST\n");
 }
 
 // Sets what the variant reads, no more: a uniform that is not read is none.
 void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame) const {
     const ScreenTransform& transform = cells.transform();
     const bool perspective = transform.perspective();
+    const bool lit = shading_ != Shading::unlit;
     const auto set = [&](const char* name, double value) { program.set(name, static_cast<float>(value)); };
     if (perspective) set("inverse_far", frame.far);
     if (perspective && has_medium_) set("inverse_near", 1.0 / cells.near_depth());
     if (!needs_order()) set("inverse_nearest", 1.0 / frame.nearest);
-    if (lit_ || (perspective && has_medium_)) {
+    if (perspective ? lit || has_medium_ : shading_ == Shading::smooth) {
         const glm::dvec2 center = transform.principal_point();
         program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
         set("pixels_per_unit", transform.pixels_per_unit());
     }
     list_.bind(surfaces_unit);
-    if (!lit_) return;
+    if (!lit) return;
 
     const Lighting& lighting = surfaces_->lighting;
     set("two_sided", lighting.two_sided ? 1.0 : 0.0);

@@ -46,7 +46,8 @@ public:
 private:
     std::shared_ptr<const SurfaceScene> surfaces_;
     SurfaceCells cells_;
-    bool opaque_, lit_, has_medium_ = false;
+    bool opaque_, has_medium_ = false;
+    Shading shading_;
     Texture list_, lights_;
     std::vector<std::uint8_t> drawn_;
     std::vector<CellId> drawn_items_;

@@ -3,14 +3,18 @@
 // One ray segment inside a cell, cut where isosurfaces cross it (RKE00 sections 5 to 10): the medium before a crossing, then the surface.
 // No table: the surfaces are found in their sorted list, so that the work grows with those crossed.
 //   MEDIUM    there is one; the method's file, behind this one, says what light it gives
-//   LIT       surfaces are shaded by the gradient
+//   LIT       surfaces are shaded by the gradient, one for the cell or
+//   SMOOTH    linear in it
 //   NEAREST   all are opaque and there is no medium: the first crossing, for the depth test
 in vec3 v_ridges;
 flat in vec4 v_faces[8];
 flat in vec4 v_scalars;
 flat in vec3 v_cell;
 #ifdef LIT
-flat in vec3 v_gradient[4];
+flat in vec3 v_gradient;
+#endif
+#ifdef SMOOTH
+flat in mat3 v_slopes;
 #endif
 
 uniform float inverse_far;     // perspective: 1 / depth of the farthest point
@@ -28,15 +32,18 @@ layout(location = 0) out vec4 light;  // associated colour, opacity
 vec4 light_of_segment(float s_front, float s_back, float segment);
 #endif
 
-// How many surfaces a scalar is not below (render/surface_cells.hpp), known to be between both.
-int rank(float s, int low, int high) {
-    while (low < high) {
-        int middle = (low + high) / 2;
-        bool below = s < texelFetch(surfaces, 3 * middle).x;
-        high = below ? middle : high;
-        low = below ? low : middle + 1;
+// How many surfaces each scalar is not below (render/surface_cells.hpp), known to be between both.
+ivec2 ranks(vec2 s, int low, int high) {
+    ivec2 from = ivec2(low), to = ivec2(high);
+    while (any(lessThan(from, to))) {
+        ivec2 middle = (from + to) / 2;  // where a search has ended: its end, and what is behind the list is not read
+        ivec2 read = 3 * min(middle, high - 1);
+        vec2 thresholds = vec2(texelFetch(surfaces, read.x).x, texelFetch(surfaces, read.y).x);
+        bvec2 open = lessThan(from, to), below = lessThan(s, thresholds);
+        to = ivec2(open.x && below.x ? middle.x : to.x, open.y && below.y ? middle.y : to.y);
+        from = ivec2(open.x && !below.x ? middle.x + 1 : from.x, open.y && !below.y ? middle.y + 1 : from.y);
     }
-    return low;
+    return from;
 }
 
 // Nearness and scalar of the ray on a face between two scalars. Both cells of the face must get the same bits: the same arithmetic
@@ -60,8 +67,8 @@ uniform vec4 ambient;                              // and the exponent
 uniform float two_sided, light_count;
 layout(binding = 9) uniform samplerBuffer lights;  // two each: direction to it, of length 1 (0: to the eye), diffuse; colour, specular
 
-// classify/lighting.hpp. `to_eye` has length 1.
-vec3 shade(vec3 color, vec3 gradient, vec3 to_eye) {
+// classify/lighting.hpp: what of its colour a surface reflects. `to_eye` has length 1.
+vec3 reflected(vec3 gradient, vec3 to_eye) {
     vec3 size = abs(gradient);
     float largest = max(max(size.x, size.y), size.z);
     vec3 normal = -normalize(gradient / largest);
@@ -76,7 +83,7 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye) {
         float highlight = pow(clamp(dot(normal, middle) / max(length(middle), 1e-30), 0.0, 1.0), ambient.w);
         sum += facing > 0.0 ? second.rgb * (first.w * min(facing, 1.0) + second.w * highlight) : vec3(0.0);
     }
-    return largest > 0.0 ? sum * color : color;
+    return largest > 0.0 ? sum : vec3(1.0);
 }
 #endif
 
@@ -108,11 +115,22 @@ void main() {
     float segment = depth_difference * ray;
 
     int first = int(v_cell.x), last = int(v_cell.y);
-    int k = rank(front.y, first, last), end = rank(back.y, first, last);
+    ivec2 both = ranks(vec2(front.y, back.y), first, last);
+    int k = both.x, end = both.y;
     bool rising = k < end;
     light = vec4(0.0);
 #ifdef NEAREST
     if (k == end) discard;
+#endif
+#ifdef LIT
+#ifdef PERSPECTIVE
+    vec3 to_eye = -(offset.x * axis_right.xyz + offset.y * axis_down.xyz + axis_forward.xyz) / ray;
+#else
+    vec3 to_eye = -axis_forward.xyz;
+#endif
+#ifndef SMOOTH
+    vec3 share_of_color = reflected(v_gradient, to_eye);
+#endif
 #endif
     float at = 0.0, s_at = front.y;  // where the last crossing was, as a share of the segment, and the scalar there
     for (;;) {
@@ -127,7 +145,7 @@ void main() {
         lead = 0.0;
 #endif
         vec3 color = texelFetch(surfaces, surface + (rising ? 1 : 2)).rgb;
-#if defined(LIT) || defined(NEAREST)
+#if defined(SMOOTH) || defined(NEAREST)
         float depth = front_depth + share * depth_difference;  // from the farthest point's on
 #ifdef PERSPECTIVE
         float full_depth = depth + 1.0 / inverse_far;
@@ -135,15 +153,11 @@ void main() {
         float full_depth = 1.0;
 #endif
 #endif
-#ifdef LIT
-        vec3 place = vec3(offset * full_depth, depth);
-        vec3 gradient = v_gradient[0] + v_gradient[1] * place.x + v_gradient[2] * place.y + v_gradient[3] * place.z;
-#ifdef PERSPECTIVE
-        vec3 to_eye = -(offset.x * axis_right.xyz + offset.y * axis_down.xyz + axis_forward.xyz) / ray;
-#else
-        vec3 to_eye = -axis_forward.xyz;
+#ifdef SMOOTH
+        vec3 share_of_color = reflected(v_gradient + v_slopes * vec3(offset * full_depth, depth), to_eye);
 #endif
-        color = shade(color, gradient, to_eye);
+#ifdef LIT
+        color *= share_of_color;
 #endif
 #ifdef NEAREST
 #ifdef PERSPECTIVE

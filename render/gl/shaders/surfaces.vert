@@ -14,7 +14,10 @@ flat out vec4 v_faces[8];
 flat out vec4 v_scalars;
 flat out vec3 v_cell;
 #ifdef LIT
-flat out vec3 v_gradient[4];
+flat out vec3 v_gradient;
+#endif
+#ifdef SMOOTH
+flat out mat3 v_slopes;
 #endif
 
 // What the method wants to know of a cell between two scalars.
@@ -27,7 +30,10 @@ void main() {
     v_scalars = scalars;
     v_cell = cell;
 #ifdef LIT
-    v_gradient = gradient;
+    v_gradient = gradient[0];
+#endif
+#ifdef SMOOTH
+    v_slopes = mat3(gradient[1], gradient[2], gradient[3]);
 #endif
     gl_Position = vec4(position, 0.0, 1.0);
 }
