@@ -16,8 +16,8 @@ packages=(
     libglm-dev libtbb-dev libhwy-dev
     # OpenGL without a screen: OSMesa at build and at run time, glad to generate its loader
     libosmesa6-dev libosmesa6 python3-glad
-    # pictures, JSON, the command line
-    libpng-dev libopenexr-dev nlohmann-json3-dev libcli11-dev
+    # pictures and the text in them, JSON, the command line
+    libpng-dev libopenexr-dev libfreetype-dev fonts-dejavu-core nlohmann-json3-dev libcli11-dev
     # tests and benchmarks; clang for the sanitizers and libFuzzer
     clang libclang-rt-dev libgtest-dev librapidcheck-dev libbenchmark-dev
 )

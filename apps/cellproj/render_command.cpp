@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "annotation_options.hpp"
 #include "commands.hpp"
 #include "mesh/error.hpp"
 #include "progress.hpp"
@@ -26,6 +27,7 @@ constexpr std::size_t rays_of_proof = 4096;
 
 struct RenderOptions {
     SceneOptions scene;
+    AnnotationOptions annotations;
     std::filesystem::path output, stats;
     std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto";
     std::optional<double> max_error;  // --max-error: the method is chosen by measuring
@@ -178,10 +180,15 @@ void render_pictures(const RenderOptions& options) {
     const Backend backend = chosen_backend(options.backend).value_or(usual_backend(quality, fields));
     require_drawn(backend, quality, fields);
     require_writable_image(options.output);
+    const std::shared_ptr<const Font> font = require_annotated(options.annotations, options.output, size);
     if (!options.stats.empty()) require_writable(options.stats);
 
     const auto [input, scene] = load_scene(options.scene);
     const std::vector<Camera> cameras = cameras_of_pictures(options, input, size);
+    const Annotator annotator = make_annotator(options.annotations, options.scene, scene, size, options.background, font);
+    const ImageSize view = annotator.view_size();  // what annotations leave to the volume
+    std::vector<Camera> views;
+    for (const Camera& camera : cameras) views.push_back(annotator.view_camera(camera));
 
     RunStatistics run;
     run.once_ms.read = input.read_ms;
@@ -189,7 +196,7 @@ void render_pictures(const RenderOptions& options) {
     const auto renderer = make_renderer(backend, {.threads = options.threads});
     std::optional<double> error;  // of the first view
     if (options.max_error)
-        quality = choose_measured(*renderer, backend, scene, cameras, size, *options.max_error, quality, error.emplace());
+        quality = choose_measured(*renderer, backend, scene, views, view, *options.max_error, quality, error.emplace());
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
@@ -200,7 +207,7 @@ void render_pictures(const RenderOptions& options) {
         const std::filesystem::path file = numbered(options.output, i, cameras.size());
         const Progress progress("rendering " + file.string());
         Statistics statistics;
-        const Image image = renderer->render(scene, cameras[i], size, quality, &statistics);
+        Image image = renderer->render(scene, views[i], view, quality, &statistics);
         if (i == 0) statistics.error = error;
         const Stopwatch writing;
         std::map<std::string, std::string> text{
@@ -212,9 +219,10 @@ void render_pictures(const RenderOptions& options) {
             {"cellproj order", statistics.order},
             {"cellproj backend", statistics.backend + ", " + statistics.backend_version}};
         if (scene.opacity_field) text["cellproj opacity field"] = scene.opacity_field->name;
-        write(image, file, options, text);
-        statistics.ms.write = writing.ms();
+        if (!annotator.note().empty()) text["cellproj note"] = annotator.note();
         warn(image, statistics, file);
+        write(annotator.compose(std::move(image), cameras[i]), file, options, text);
+        statistics.ms.write = writing.ms();
         print_line(file, statistics);
         print_proof(statistics);
         run.pictures.push_back(std::move(statistics));
@@ -232,6 +240,7 @@ void add_render_command(CLI::App& app) {
     add_scene_options(*command, options->scene);
     command->add_option("-o,--output", options->output, "The picture: .png or .exr; several become NAME_000.png …")
         ->required();
+    add_annotation_options(*command, options->annotations);
     command->add_option("--orbit", options->orbit_degrees, "Turn the camera by DEGREES in all, over --frames pictures")
         ->check(CLI::Range(-36000.0, 36000.0));
     command->add_option("--frames", options->frames, "Number of pictures of the orbit")->check(CLI::Range(1, 100000));

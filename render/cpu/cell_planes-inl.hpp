@@ -30,13 +30,14 @@ struct alignas(64) CellPlanes {
     using Row = float[columns];
 
     Row nearness[4], slope_x[4], slope_y[4];  // of the faces' planes
-    std::uint32_t towards_eye[4][columns];    // all bits where the face looks towards the eye
+    std::uint32_t front_faces[columns];       // bit k: face k looks towards the eye
     Row nearest, farthest;                    // of the corners
     // s = first_scalar + (scalar + x·scalar_x + y·scalar_y + n·scalar_n)·depth, depth 1 in parallel views
     Row first_scalar, scalar, scalar_x, scalar_y, scalar_n;
     Row lowest, highest;       // scalar
     Row base;                  // nearness of the first corner, to which the above are relative; perspective: its 1/depth
     std::int32_t left[columns], top[columns], width[columns], height[columns];  // pixels of the tile; width ≤ 0: none
+    std::int32_t first_pixel[columns];                                            // left + tile_side·top
 };
 
 template <class V>
@@ -120,10 +121,12 @@ HWY_NOINLINE void make_planes(D d, const ScreenCells& cells, const std::uint32_t
     const V top = hn::Min(hn::Max(hn::Ceil(hn::Sub(lowest_of(p[0].y, p[1].y, p[2].y, p[3].y), y0)), zero), bottom_end);
     const V bottom = hn::Max(hn::Min(hn::Floor(hn::Sub(highest_of(p[0].y, p[1].y, p[2].y, p[3].y), y0)), bottom_end), far_left);
     const auto one = hn::Set(di, 1);
-    hn::Store(hn::ConvertTo(di, left), di, planes.left);
-    hn::Store(hn::ConvertTo(di, top), di, planes.top);
-    hn::Store(hn::Add(hn::Sub(hn::ConvertTo(di, right), hn::ConvertTo(di, left)), one), di, planes.width);
-    hn::Store(hn::Add(hn::Sub(hn::ConvertTo(di, bottom), hn::ConvertTo(di, top)), one), di, planes.height);
+    const auto left_pixel = hn::ConvertTo(di, left), top_pixel = hn::ConvertTo(di, top);
+    hn::Store(left_pixel, di, planes.left);
+    hn::Store(top_pixel, di, planes.top);
+    hn::Store(hn::Add(left_pixel, hn::Mul(top_pixel, hn::Set(di, tile_side))), di, planes.first_pixel);
+    hn::Store(hn::Add(hn::Sub(hn::ConvertTo(di, right), left_pixel), one), di, planes.width);
+    hn::Store(hn::Add(hn::Sub(hn::ConvertTo(di, bottom), top_pixel), one), di, planes.height);
 
     const V first_x = hn::Add(x0, left), first_y = hn::Add(y0, top);
     hn::Store(hn::Sub(highest_of(p[0].n, p[1].n, p[2].n, p[3].n), p[0].n), d, planes.nearest);
@@ -138,7 +141,7 @@ HWY_NOINLINE void make_planes(D d, const ScreenCells& cells, const std::uint32_t
     normal[1] = cross(edge[1], edge[2]);
     normal[2] = cross(edge[0], edge[2]);
     normal[3] = cross(edge[0], edge[1]);
-    const auto odd_bits = hn::VecFromMask(du, odd);
+    auto front_faces = hn::Zero(du);
     for (std::size_t k = 0; k < 4; ++k) {
         const Vec3<V>& n = normal[k];
         const Vec3<V>& anchor = p[face[k][0]];
@@ -153,10 +156,12 @@ HWY_NOINLINE void make_planes(D d, const ScreenCells& cells, const std::uint32_t
         hn::Store(slope_x, d, planes.slope_x[k]);
         hn::Store(slope_y, d, planes.slope_y[k]);
         // Corners in cell order turn positively around the normal of the face opposite to an even corner, seen from inside.
-        const auto negative = hn::VecFromMask(du, hn::RebindMask(du, hn::Ne(sign, hn::Zero(du))));
-        const auto other = hn::Xor(negative, odd_bits);
-        hn::Store(k % 2 == 0 ? other : hn::Not(other), du, planes.towards_eye[k]);
+        const auto negative = hn::Ne(sign, hn::Zero(du));
+        const auto bit = hn::Set(du, 1U << k), zero_bits = hn::Zero(du);
+        const auto away = hn::Xor(negative, odd);
+        front_faces = hn::Or(front_faces, k % 2 == 0 ? hn::IfThenElse(away, bit, zero_bits) : hn::IfThenElse(away, zero_bits, bit));
     }
+    hn::Store(front_faces, du, planes.front_faces);
 
     if constexpr (constant) {
         hn::Store(hn::Load(d, corners.scalars), d, planes.first_scalar);

@@ -3,6 +3,7 @@
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -57,8 +58,8 @@ public:
             bytes_ = tables_->bytes;
             shading_.tables = &*tables_;
         }
-        shading_.opaque = static_cast<float>(1.0 - hidden);
         may_be_opaque_ = transfer.max_extinction(0.0, 1.0) * longest_segment > -std::log(hidden);
+        shading_.opaque = may_be_opaque_ ? static_cast<float>(1.0 - hidden) : 1.0F;
     }
 
     const Shading& shading() const { return shading_; }
@@ -149,24 +150,38 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     Image image(size.width, size.height);
     statistics.ms.plan = total.ms();
 
+    const auto region_at = [&](int x, int y) {
+        constexpr int side = region_side * tile_side;
+        return Region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
+    };
+    const Region first = region_at(0, 0);
+    const bool single = first.width == size.width && first.height == size.height;
+    const bool may_be_opaque = classification_->may_be_opaque();
+
+    // Points and boxes do not depend on the order: they are found beside it, where part of a sort leaves cores idle.
     const Stopwatch sort;
     OrderReport order_report;
-    // Pixels that sort their own fragments want cells nearly sorted, no more.
-    const ViewOrder order =
-        prepared_->order(camera, size, quality.order_per_pixel ? OrderMethod::centroid : quality.order, &order_report);
+    ViewOrder order;
+    oneapi::tbb::parallel_invoke(
+        [&] {
+            // Pixels that sort their own fragments want cells nearly sorted, no more.
+            order = prepared_->order(camera, size, quality.order_per_pixel ? OrderMethod::centroid : quality.order, &order_report);
+        },
+        [&] {
+            mesh_.set_view(camera, size);
+            if (single && (quality.order_per_pixel || !may_be_opaque)) bins_.find_cells(mesh_.cells(), first);
+        });
     statistics.ms.sort = sort.ms();
 
     const Stopwatch projecting;
-    mesh_.set_view(camera, size);
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
     statistics.ms.project = projecting.ms();
 
-    constexpr int side = region_side * tile_side;
-    for (int y = 0; y < size.height; y += side)
-        for (int x = 0; x < size.width; x += side) {
-            const Region region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, classification_->may_be_opaque());
+    for (int y = 0; y < size.height; y += first.height)
+        for (int x = 0; x < size.width; x += first.width) {
+            const Region region = region_at(x, y);
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, may_be_opaque);
             draw(image, region, quality.order_per_pixel, statistics);
             statistics.counts.drawn += bins_.drawn();
         }

@@ -30,59 +30,56 @@ namespace cellproj::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The tiles that a cell's corners span. Rounding keeps order, so no pixel centre inside falls out.
-struct FoundBox {
-    TileBox tiles;
-    bool begins;  // in this region of the picture
-};
-HWY_INLINE FoundBox box_of(const ScreenCells& cells, const Region& region, const std::array<VertexId, 4>& corners) {
-    float low_x = 1e30F, low_y = 1e30F, high_x = -1e30F, high_y = -1e30F;
-    for (const VertexId v : corners) {
-        const ScreenPoint& p = cells.points[v];
-        low_x = std::min(low_x, p.x);
-        low_y = std::min(low_y, p.y);
-        high_x = std::max(high_x, p.x);
-        high_y = std::max(high_y, p.y);
+class BoxFinder {
+public:
+    HWY_INLINE BoxFinder(const ScreenCells& cells, const Region& region)
+        : cells_(cells), x0_(static_cast<float>(region.x) + 0.5F - 0.5F * static_cast<float>(cells.view.width)),
+          y0_(static_cast<float>(region.y) + 0.5F - 0.5F * static_cast<float>(cells.view.height)),
+          right_(static_cast<float>(region.width - 1)), bottom_(static_cast<float>(region.height - 1)),
+          at_left_(region.x == 0), at_top_(region.y == 0) {}
+
+    HWY_INLINE void prefetch_points(std::uint32_t item) const {
+        for (const VertexId v : cells_.corners(item)) hwy::Prefetch(&cells_.points[v]);
     }
-    const float x0 = static_cast<float>(region.x) + 0.5F - 0.5F * static_cast<float>(cells.view.width);
-    const float y0 = static_cast<float>(region.y) + 0.5F - 0.5F * static_cast<float>(cells.view.height);
-    const float from_x = std::ceil(low_x - x0), from_y = std::ceil(low_y - y0);
-    const float left = std::max(from_x, 0.0F), top = std::max(from_y, 0.0F);
-    const float right = std::min(std::floor(high_x - x0), static_cast<float>(region.width - 1));
-    const float bottom = std::min(std::floor(high_y - y0), static_cast<float>(region.height - 1));
-    if (!(left <= right && top <= bottom)) return {{}, false};
-    const auto tile = [](float pixel) { return static_cast<std::uint8_t>(static_cast<int>(pixel) / tile_side); };
-    return {{tile(left), tile(top), tile(right), tile(bottom)}, (from_x >= 0 || region.x == 0) && (from_y >= 0 || region.y == 0)};
+
+    HWY_INLINE TileBox of(std::uint32_t item) const {
+        if (item < cells_.tets.size() && !cells_.visible.empty() && !cells_.visible[item]) return {};
+        const hn::CappedTag<float, 4> d;  // x, y, nearness, scalar
+        const auto& corners = cells_.corners(item);
+        HWY_ALIGN float low[4], high[4];
+        for (std::size_t k = 0; k < 4; k += hn::Lanes(d)) {
+            const auto point = [&](std::size_t i) HWY_ATTR { return hn::LoadU(d, &cells_.points[corners[i]].x + k); };
+            const auto a = point(0), b = point(1), c = point(2), e = point(3);
+            hn::Store(hn::Min(hn::Min(a, b), hn::Min(c, e)), d, low + k);
+            hn::Store(hn::Max(hn::Max(a, b), hn::Max(c, e)), d, high + k);
+        }
+        const float from_x = std::ceil(low[0] - x0_), from_y = std::ceil(low[1] - y0_);
+        const float left = std::max(from_x, 0.0F), top = std::max(from_y, 0.0F);
+        const float right = std::min(std::floor(high[0] - x0_), right_), bottom = std::min(std::floor(high[1] - y0_), bottom_);
+        if (!(left <= right && top <= bottom)) return {};
+        const auto tile = [](float pixel) { return static_cast<std::uint32_t>(pixel) / tile_side % region_side; };
+        return {tile(left), tile(top), tile(right), tile(bottom), (from_x >= 0 || at_left_) && (from_y >= 0 || at_top_)};
+    }
+
+private:
+    const ScreenCells& cells_;
+    float x0_, y0_, right_, bottom_;
+    bool at_left_, at_top_;
+};
+
+void FindBoxesOf(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, TileBox* boxes) {
+    constexpr std::size_t early = 32, soon = 16;  // how long before memory is asked: for the corners of a cell, for its points
+    const BoxFinder finder(cells, region);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (i + early < items.size()) hwy::Prefetch(cells.corners(items[i + early]).data());
+        if (i + soon < items.size()) finder.prefetch_points(items[i + soon]);
+        boxes[items[i]] = finder.of(items[i]);
+    }
 }
 
-std::size_t FindBoxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
-                      const std::uint8_t* full, TileBox* boxes, std::uint32_t* counts, std::uint8_t* extra_drawn) {
-    constexpr std::size_t early = 32, soon = 16;  // how long before memory is asked: for the corners of a cell, for its points
-    const std::size_t count = items.size();
-    std::size_t drawn = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (i + early < count) hwy::Prefetch(cells.corners(items[i + early]).data());
-        if (i + soon < count)
-            for (const VertexId v : cells.corners(items[i + soon])) hwy::Prefetch(&cells.points[v]);
-        const std::uint32_t item = items[i];
-        const bool whole = item < cells.tets.size();
-        if (whole && !cells.visible.empty() && !cells.visible[item]) {
-            boxes[i] = {};
-            continue;
-        }
-        const auto [box, begins] = box_of(cells, region, cells.corners(item));
-        bool open = false;
-        for (int y = box.first_y; y <= box.last_y; ++y)
-            for (int x = box.first_x; x <= box.last_x; ++x) {
-                const int tile = y * region_side + x;
-                counts[tile] += full[tile] == 0;
-                open |= full[tile] == 0;
-            }
-        boxes[i] = open ? box : TileBox{};
-        if (!open) continue;
-        drawn += whole && begins;
-        if (!whole && begins) extra_drawn[item - cells.tets.size()] = 1;
-    }
-    return drawn;
+void FindBoxesFrom(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, TileBox* boxes) {
+    const BoxFinder finder(cells, region);
+    for (std::size_t item = first; item < end; ++item) boxes[item] = finder.of(static_cast<std::uint32_t>(item));
 }
 
 // Loads a tile's pixels, draws, and stores them.
@@ -148,16 +145,19 @@ HWY_AFTER_NAMESPACE();
 
 namespace cellproj::cpu {
 
-HWY_EXPORT(FindBoxes);
+HWY_EXPORT(FindBoxesOf);
+HWY_EXPORT(FindBoxesFrom);
 HWY_EXPORT(DrawTile);
 HWY_EXPORT(DrawTileByPixels);
 HWY_EXPORT(LightOfSegments);
 
-std::size_t find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
-                       std::span<const std::uint8_t, tiles_per_region> full, std::span<TileBox> boxes,
-                       std::span<std::uint32_t, tiles_per_region> counts, std::span<std::uint8_t> extra_drawn) {
-    assert(boxes.size() == items.size() && extra_drawn.size() == cells.extra.size());
-    return HWY_DYNAMIC_DISPATCH(FindBoxes)(cells, region, items, full.data(), boxes.data(), counts.data(), extra_drawn.data());
+void find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, std::span<TileBox> boxes) {
+    HWY_DYNAMIC_DISPATCH(FindBoxesOf)(cells, region, items, boxes.data());
+}
+
+void find_boxes(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, std::span<TileBox> boxes) {
+    assert(end <= boxes.size());
+    HWY_DYNAMIC_DISPATCH(FindBoxesFrom)(cells, region, first, end, boxes.data());
 }
 
 std::size_t draw_tile(const ScreenCells& cells, const Shading& shading, const Tile& tile, std::span<const std::uint32_t> items) {

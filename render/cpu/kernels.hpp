@@ -61,27 +61,27 @@ struct ScreenCells {
 
 // Which tiles of a region a cell's box meets: first and last column and row. No pixel centre: first_x > last_x.
 struct TileBox {
-    std::uint8_t first_x = 1, first_y = 1, last_x = 0, last_y = 0;
+    std::uint32_t first_x : 6 = 1, first_y : 6 = 1, last_x : 6 = 0, last_y : 6 = 0;
+    std::uint32_t begins : 1 = 0;  // the box meets no region to the left or above
 };
+static_assert(sizeof(TileBox) == 4);
 
 // The part of the picture at (x, y) [pixels], up to region_side tiles wide and high.
 struct Region {
     int x, y, width, height;  // pixels
 };
 
-// boxes[i] for items[i]; adds to counts[tile], row by row in the region, the number of boxes that meet the tile where it is not full.
-// Boxes that meet full tiles only are empty. Returns the number of whole cells that meet a pixel centre of the region's tiles that
-// are not full and of no region before it; sets extra_drawn (#extra) for the others.
-std::size_t find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
-                       std::span<const std::uint8_t, tiles_per_region> full, std::span<TileBox> boxes, std::span<std::uint32_t, tiles_per_region> counts,
-                       std::span<std::uint8_t> extra_drawn);
+// The boxes of items, into boxes[item]: of a list, or of all from first to end − 1, in the order of memory. Empty for cells that are
+// not visible.
+void find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, std::span<TileBox> boxes);
+void find_boxes(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, std::span<TileBox> boxes);
 
 // How a segment becomes light: by the pieces of the transfer function or by the tables of a method, one of both.
 struct Shading {
     const PieceArrays* pieces = nullptr;
     const MethodTables* tables = nullptr;
     bool half_opacity = false;  // Blending::half
-    float opaque = 1;           // behind this opacity nothing is drawn
+    float opaque = 1;           // behind a larger opacity nothing is drawn; 1: everything is
 };
 
 // The light of segments as tiles compute it: scalars 0..1, lengths ≥ 0 in scene units, as many of each. `constant`: as for fields

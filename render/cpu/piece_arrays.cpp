@@ -4,8 +4,8 @@
 namespace cellproj::cpu {
 
 PieceArrays::PieceArrays(const Method& method, const PieceTable& table, const WalkLimits& walk)
-    : density(table.model == OpticalModel::density), limits(walk), three_point_depth(method.kind == MethodKind::integral ? 0.125F : 0.0F),
-      bin_count(static_cast<float>(table.bin_count())) {
+    : density(table.model == OpticalModel::density), count(static_cast<std::int32_t>(table.piece_count())), limits(walk), three_point_depth(method.kind == MethodKind::integral ? 0.125F : 0.0F),
+      mean_place(density && method.kind == MethodKind::integral), bin_count(static_cast<float>(table.bin_count())) {
     for (std::size_t i = 0; i < table.piece_count(); ++i) {
         const float* texels = &table.pieces[4 * PieceTable::texels_per_piece * i];
         begin.push_back(texels[0]);
@@ -19,6 +19,15 @@ PieceArrays::PieceArrays(const Method& method, const PieceTable& table, const Wa
             running[channel].push_back(texels[12 + channel]);
             lost[channel].push_back(texels[16 + channel]);
         }
+    }
+    constexpr std::size_t longest_vector = 16;
+    const std::size_t whole_vectors = (table.piece_count() + longest_vector - 1) / longest_vector * longest_vector;
+    for (auto* list : {&begin, &end, &inverse_width, &extinction[0], &extinction[1]}) list->resize(whole_vectors);
+    for (auto& of_side : color)
+        for (auto& list : of_side) list.resize(whole_vectors);
+    for (std::size_t channel = 0; channel < 4; ++channel) {
+        running[channel].resize(whole_vectors);
+        lost[channel].resize(whole_vectors);
     }
     for (std::size_t b = 0; b <= table.bin_count(); ++b) {
         first.push_back(static_cast<std::int32_t>(table.bins[4 * b]));

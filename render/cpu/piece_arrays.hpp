@@ -14,10 +14,13 @@ struct PieceArrays {
     PieceArrays(const Method& method, const PieceTable& table, const WalkLimits& limits);
 
     bool density;
+    std::int32_t count;  // pieces
     WalkLimits limits;
     float three_point_depth;  // up to which optical depth three points of a Gauss rule serve a part
+    bool mean_place;          // shallow parts may take the colour at their mean place (segment_light-inl.hpp)
     float bin_count;
-    // Of each piece (classify/piece_table.hpp): scalar at its begin and its end, 1/width, τ and colour at both.
+    // Of each piece (classify/piece_table.hpp): scalar at its begin and its end, 1/width, τ and colour at both. These lists and those below
+    // are filled up with 0 to whole vectors.
     std::vector<float> begin, end, inverse_width;
     std::vector<float> extinction[2], color[2][3];
     // ∫ q ds and ∫ τ ds up to its begin: rounded, and what rounding lost.

@@ -74,6 +74,7 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
         if (behind) near_points = true;
     });
     near_points_ = near_points;
+    cells_.points = points_;
 }
 
 ScreenPoint ScreenMesh::on_screen(const EyeVertex& vertex) const {

@@ -3,9 +3,8 @@
 // classify/piece_walk.cpp for as many segments at once as a vector has lanes, in float32: the light of segments by the pieces of
 // the transfer function. Included once per instruction set, behind Highway; private to kernels.cpp.
 //
-// Where this differs from the float64 model: in the density model the two weights of a part sum up to its opacity, exactly, so
-// that a rule of three points serves shallow parts: its error, 3.6e-4·D³ where τ rises from 0, only moves light between the
-// colours at both ends.
+// Where this differs from the float64 model: in the density model `integral` takes the opacity of parts that are no deeper than 1 times
+// the colour where their light starts in the mean (mean_place), without quadrature.
 #if defined(CELLPROJ_SEGMENT_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CELLPROJ_SEGMENT_LIGHT_INL
 #undef CELLPROJ_SEGMENT_LIGHT_INL
@@ -77,18 +76,30 @@ HWY_INLINE V opacity_of_depth(D d, V depth) {
     return hn::Min(hn::Mul(depth, mean_transmittance(d, depth)), hn::Set(d, 1.0F));
 }
 
-// Entries of a list per lane; one load where all lanes want the same one, as most do.
+// Entries of a list of a table per lane: one load where all lanes want the same one, as most do; of tables that fit into two vectors, which
+// most do, a permutation of these; else a gather.
 template <class D>
 class PerLane {
 public:
-    using Index = hn::Vec<hn::RebindToSigned<D>>;
+    using DI = hn::RebindToSigned<D>;
+    using Index = hn::Vec<DI>;
 
-    HWY_INLINE PerLane(D d, Index index) : d_(d), index_(index), first_(hn::GetLane(index)) {
-        const hn::RebindToSigned<D> di;
+    HWY_INLINE PerLane(D d, const PieceArrays& table, Index index) : d_(d), index_(index), first_(hn::GetLane(index)) {
+        const DI di;
+        const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
         same_ = hn::AllTrue(di, hn::Eq(index, hn::Set(di, first_)));
+        tables_ = (table.count + lanes - 1) / lanes;
     }
     HWY_INLINE hn::Vec<D> of(const std::vector<float>& list) const {
-        return same_ ? hn::Set(d_, list[static_cast<std::size_t>(first_)]) : hn::GatherIndex(d_, list.data(), index_);
+        if (same_) return hn::Set(d_, list[static_cast<std::size_t>(first_)]);
+        if (tables_ > 2) return hn::GatherIndex(d_, list.data(), index_);
+        const DI di;
+        const auto lanes = static_cast<std::int32_t>(hn::Lanes(d_));
+        const auto place = hn::IndicesFromVec(d_, hn::And(index_, hn::Set(di, lanes - 1)));
+        const auto low = hn::TableLookupLanes(hn::LoadU(d_, list.data()), place);
+        if (tables_ == 1) return low;
+        const auto high = hn::TableLookupLanes(hn::LoadU(d_, list.data() + lanes), place);
+        return hn::IfThenElse(hn::RebindMask(d_, hn::Lt(index_, hn::Set(di, lanes))), low, high);
     }
 
 private:
@@ -96,6 +107,7 @@ private:
     Index index_;
     std::int32_t first_;
     bool same_;
+    std::int32_t tables_;  // vectors that hold a list
 };
 
 // The last piece that begins at or below s, per lane.
@@ -112,6 +124,27 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> pieces_of(D d, const PieceArrays& tabl
         first = hn::IfThenElse(below, first, middle);
     }
     return first;
+}
+
+// Up to this depth the series below serve.
+inline constexpr float mean_place_depth = 1.0F;
+
+// Where the light of a segment starts in the mean, from its front, 0, to its back, 1, in the density model: the light is the opacity
+// times the colour there, as colour is linear in a piece. With D(t) = D·((1 − r)·t + r·t²), r = (τ_b − τ_f)/(τ_b + τ_f),
+//   ∫ t·e^(−D(t)) dD(t) / (1 − e^(−D))
+//     = 1/2 + r/6 + D·(r²/60 − 1/12) + D²·(r³/840 − r/360) + D³·(1/720 − r²/2520 + r⁴/15120) + D⁴·(r/15120 − r³/30240 + …)
+//       + D⁵·(−1/30240 + r²/100800 − …) + D⁶·(−r/604800 + …).
+// What is left out is less than 2e-6 up to mean_place_depth.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V mean_place(D d, V depth, V r) {
+    const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
+    const V square = hn::Mul(r, r);
+    V mean = hn::MulAdd(square, set(1.0F / 100800), set(-1.0F / 30240));
+    mean = hn::MulAdd(mean, depth, hn::Mul(r, hn::MulAdd(square, set(-1.0F / 30240), set(1.0F / 15120))));
+    mean = hn::MulAdd(mean, depth, hn::MulAdd(square, hn::MulAdd(square, set(1.0F / 15120), set(-1.0F / 2520)), set(1.0F / 720)));
+    mean = hn::MulAdd(mean, depth, hn::Mul(r, hn::MulAdd(square, set(1.0F / 840), set(-1.0F / 360))));
+    mean = hn::MulAdd(mean, depth, hn::MulAdd(square, set(1.0F / 60), set(-1.0F / 12)));
+    return hn::MulAdd(mean, depth, hn::MulAdd(r, set(1.0F / 6), set(0.5F)));
 }
 
 template <class D, class V = hn::Vec<D>>
@@ -136,7 +169,7 @@ public:
         V s = from_;
         M active = hn::Ge(length_, hn::Zero(d_));
         for (int parts = 1;; ++parts) {
-            const PerLane<D> lanes(d_, piece);
+            const PerLane<D> lanes(d_, table_, piece);
             const V begin = lanes.of(table_.begin), end = lanes.of(table_.end);
             const V stop = hn::IfThenElse(rising_, hn::Min(end, to_), hn::Max(begin, to_));
             add_part(lanes, begin, s, stop, active);
@@ -221,14 +254,20 @@ private:
         const M absorbs = hn::Gt(tau, zero);
         const V depth = hn::Mul(hn::Mul(length, hn::Set(d_, 0.5F)), tau);
         const V r = hn::IfThenElseZero(absorbs, hn::Div(hn::Sub(tau1, tau0), hn::IfThenElse(absorbs, tau, one)));
-        Weights w = weights_of({length, depth, r});
-        if (table_.density) {
+        V at_end, at_begin;  // weights of the colours at both ends of the piece
+        if (table_.mean_place && hn::AllTrue(d_, hn::Le(depth, hn::Set(d_, mean_place_depth)))) {
             const V seen = hn::Mul(exp_of_minus(d_, depth_), opacity_of_depth(d_, depth));
-            w.front = hn::Max(zero, hn::Sub(seen, w.back));
+            at_end = hn::Mul(seen, hn::MulAdd(mean_place(d_, depth, r), hn::Sub(t1, t0), t0));
+            at_begin = hn::Sub(seen, at_end);
+        } else {
+            Weights w = weights_of({length, depth, r});
+            if (table_.density) {
+                const V seen = hn::Mul(exp_of_minus(d_, depth_), opacity_of_depth(d_, depth));
+                w.front = hn::Max(zero, hn::Sub(seen, w.back));
+            }
+            at_end = hn::MulAdd(w.front, t0, hn::Mul(w.back, t1));
+            at_begin = hn::Sub(hn::Add(w.front, w.back), at_end);
         }
-        // Colours at both ends of the part are mixed from those at both ends of the piece.
-        const V at_end = hn::MulAdd(w.front, t0, hn::Mul(w.back, t1));
-        const V at_begin = hn::Sub(hn::Add(w.front, w.back), at_end);
         red_ = hn::MulAdd(at_begin, piece.of(table_.color[0][0]), hn::MulAdd(at_end, piece.of(table_.color[1][0]), red_));
         green_ = hn::MulAdd(at_begin, piece.of(table_.color[0][1]), hn::MulAdd(at_end, piece.of(table_.color[1][1]), green_));
         blue_ = hn::MulAdd(at_begin, piece.of(table_.color[0][2]), hn::MulAdd(at_end, piece.of(table_.color[1][2]), blue_));
@@ -244,14 +283,14 @@ private:
     // The most whole pieces from `piece` on, by halving, that are thin enough to be taken together.
     HWY_INLINE void take_blocks(M active, VI step, VI& piece, V& s) {
         const DI di;
-        const VI newest = hn::Set(di, static_cast<std::int32_t>(table_.begin.size()) - 1);
+        const VI newest = hn::Set(di, table_.count - 1);
         const VI last = pieces_of(d_, table_, to_), one = hn::Set(di, 1), zero = hn::Zero(di);
         VI count = hn::IfThenElseZero(hn::RebindMask(di, active), hn::Mul(hn::Sub(last, piece), step));
         const auto rising = hn::RebindMask(di, rising_);
         while (!hn::AllFalse(di, hn::Gt(count, one))) {
             const VI begin = hn::Min(hn::IfThenElse(rising, piece, hn::Add(piece, one)), newest);
             const VI end = hn::Add(begin, hn::Mul(hn::Max(count, zero), step));
-            const PerLane<D> a(d_, begin), b(d_, end);
+            const PerLane<D> a(d_, table_, begin), b(d_, table_, end);
             const V width = hn::Abs(hn::Sub(b.of(table_.begin), a.of(table_.begin)));
             const V scale = hn::Mul(length_, per_range_);  // ∫ ds → ∫ dx
             const V block_depth = hn::Mul(between(3, a, b), scale);
@@ -299,59 +338,72 @@ HWY_INLINE std::int32_t piece_of(const PieceArrays& table, float s) {
     return first;
 }
 
-// What Walk gives, for segments inside one piece, if none is deeper than three_point_depth; else only `depth` is right. Cells are small
-// and transfer functions have few pieces: this is most of the work, and nothing but arithmetic.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE LightOf<V> light_in_piece(D d, const PieceArrays& table, std::int32_t piece, V s_f, V s_b, V length, V& depth) {
-    const auto i = static_cast<std::size_t>(piece);
-    const V one = hn::Set(d, 1.0F), zero = hn::Zero(d), half = hn::Set(d, 0.5F);
-    const V begin = hn::Set(d, table.begin[i]), per_width = hn::Set(d, table.inverse_width[i]);
-    const V t_f = hn::Mul(hn::Sub(s_f, begin), per_width), t_b = hn::Mul(hn::Sub(s_b, begin), per_width);
-    const float tau_0 = table.extinction[0][i], tau_1 = table.extinction[1][i];
-    const auto mixed = [&](float a, float b, V t) HWY_ATTR { return hn::MulAdd(hn::Set(d, b), t, hn::Mul(hn::Set(d, a), hn::Sub(one, t))); };
-    const V tau_f = mixed(tau_0, tau_1, t_f), tau_b = mixed(tau_0, tau_1, t_b);
-    depth = hn::Mul(hn::Mul(length, half), hn::Add(tau_f, tau_b));
-    const V mean_transmitted = mean_transmittance_shallow(d, depth);
-    const V opacity = hn::Mul(depth, mean_transmitted);
+// What Walk gives in the density model, for segments inside one piece that are no deeper than mean_place_depth. Cells are small and transfer
+// functions have few pieces: this is most of the work, and nothing but arithmetic.
+template <class D>
+class LightInPiece {
+public:
+    using V = hn::Vec<D>;
 
-    // D(t) = l·(τ_f·t + (τ_b − τ_f)·t²/2); three Gauss points
-    const V bend = hn::Mul(half, hn::Sub(tau_b, tau_f));
-    V back = zero, front = zero;
-    static constexpr float position[]{0.11270167F, 0.5F, 0.88729833F}, weight[]{0.27777778F, 0.44444444F, 0.27777778F};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const V t = hn::Set(d, position[k]);
-        const V behind = hn::Mul(hn::Mul(length, t), hn::MulAdd(bend, t, tau_f));
-        const V transmitted = hn::Mul(hn::Mul(hn::Set(d, weight[k]), length), exp_of_minus_shallow(d, behind));
-        const V light = table.density ? hn::Mul(transmitted, hn::MulAdd(hn::Add(bend, bend), t, tau_f)) : transmitted;
-        back = hn::MulAdd(light, t, back);
-        front = hn::MulAdd(light, hn::Sub(one, t), front);
+    HWY_INLINE LightInPiece(D d, const PieceArrays& table, std::int32_t piece)
+        : d_(d), begin_(hn::Set(d, table.begin[at(piece)])), per_width_(hn::Set(d, table.inverse_width[at(piece)])),
+          extinction_(d, table.extinction, at(piece)), red_(d, at(piece), table, 0), green_(d, at(piece), table, 1),
+          blue_(d, at(piece), table, 2) {}
+
+    // Right where `depth` is at most mean_place_depth.
+    HWY_INLINE LightOf<V> operator()(V s_f, V s_b, V length, V& depth) const {
+        const auto set = [&](float value) HWY_ATTR { return hn::Set(d_, value); };
+        const V t_f = hn::Mul(hn::Sub(s_f, begin_), per_width_), t_b = hn::Mul(hn::Sub(s_b, begin_), per_width_);
+        const V tau_f = extinction_.at(t_f), tau_b = extinction_.at(t_b);
+        const V both = hn::Max(hn::Add(tau_f, tau_b), set(1e-30F));
+        depth = hn::Mul(hn::Mul(length, set(0.5F)), both);
+        const V opacity = opacity_of_depth(d_, depth);
+        const V r = hn::Min(hn::Max(hn::Div(hn::Sub(tau_b, tau_f), both), set(-1.0F)), set(1.0F));
+        const V place = hn::MulAdd(mean_place(d_, depth, r), hn::Sub(t_b, t_f), t_f);
+        return {hn::Mul(opacity, red_.at(place)), hn::Mul(opacity, green_.at(place)), hn::Mul(opacity, blue_.at(place)), opacity};
     }
-    if (table.density) front = hn::Max(zero, hn::Sub(opacity, back));
-    const V at_end = hn::MulAdd(front, t_f, hn::Mul(back, t_b));
-    const V at_begin = hn::Sub(hn::Add(front, back), at_end);
-    const auto color = [&](std::size_t channel) HWY_ATTR {
-        return hn::MulAdd(at_begin, hn::Set(d, table.color[0][channel][i]), hn::Mul(at_end, hn::Set(d, table.color[1][channel][i])));
+
+private:
+    // From the value at a piece's begin, t = 0, to that at its end, t = 1.
+    struct Linear {
+        V first, change;
+        HWY_INLINE Linear(D d, const std::vector<float> (&ends)[2], std::size_t i)
+            : first(hn::Set(d, ends[0][i])), change(hn::Set(d, ends[1][i] - ends[0][i])) {}
+        HWY_INLINE Linear(D d, std::size_t i, const PieceArrays& table, std::size_t channel)
+            : first(hn::Set(d, table.color[0][channel][i])), change(hn::Set(d, table.color[1][channel][i] - table.color[0][channel][i])) {}
+        HWY_INLINE V at(V t) const { return hn::MulAdd(change, t, first); }
     };
-    return {color(0), color(1), color(2), opacity};
+    static std::size_t at(std::int32_t piece) { return static_cast<std::size_t>(piece); }
+
+    D d_;
+    V begin_, per_width_;
+    Linear extinction_, red_, green_, blue_;
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_NOINLINE LightOf<V> light_of_walk(D d, const PieceArrays& table, V s_f, V s_b, V length) {
+    return Walk<D>(d, table, s_f, s_b, length).light();
 }
 
 // The light of segments: scalars 0..1, lengths ≥ 0 in scene units.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE LightOf<V> light_of_segments(D d, const PieceArrays& table, V s_f, V s_b, V length) {
-    const float low = hn::GetLane(hn::MinOfLanes(d, hn::Min(s_f, s_b))), high = hn::GetLane(hn::MaxOfLanes(d, hn::Max(s_f, s_b)));
-    const std::int32_t piece = piece_of(table, low);
-    if (high < table.end[static_cast<std::size_t>(piece)]) {
-        V depth;
-        const LightOf<V> light = light_in_piece(d, table, piece, s_f, s_b, length, depth);
-        if (hn::AllTrue(d, hn::Le(depth, hn::Set(d, table.three_point_depth)))) return light;
+    if (table.mean_place) {
+        const float low = hn::GetLane(hn::MinOfLanes(d, hn::Min(s_f, s_b))), high = hn::GetLane(hn::MaxOfLanes(d, hn::Max(s_f, s_b)));
+        const std::int32_t piece = piece_of(table, low);
+        if (high < table.end[static_cast<std::size_t>(piece)]) {
+            V depth;
+            const LightOf<V> light = LightInPiece<D>(d, table, piece)(s_f, s_b, length, depth);
+            if (hn::AllTrue(d, hn::Le(depth, hn::Set(d, mean_place_depth)))) return light;
+        }
     }
-    return Walk<D>(d, table, s_f, s_b, length).light();
+    return light_of_walk(d, table, s_f, s_b, length);
 }
 
 // Segments of one scalar each, for fields on cells: homogeneous media, one exponential.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE LightOf<V> light_of_constants(D d, const PieceArrays& table, V s, V length) {
-    const PerLane<D> piece(d, pieces_of(d, table, s));
+    const PerLane<D> piece(d, table, pieces_of(d, table, s));
     const V one = hn::Set(d, 1.0F);
     const V t = hn::Mul(hn::Sub(s, piece.of(table.begin)), piece.of(table.inverse_width)), rest = hn::Sub(one, t);
     const auto mixed = [&](const std::vector<float>& begin, const std::vector<float>& end) HWY_ATTR {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/cpu/tile_bins.hpp"
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <utility>
 
 namespace cellproj::cpu {
 
@@ -14,13 +16,30 @@ namespace {
 constexpr std::size_t items_per_chunk = 16384;
 // Where tiles may become full. A slab costs 2 µs a tile, which a quarter of a million of cells hide.
 constexpr std::size_t slabs = 16, least_slab = 4;  // least_slab: chunks
-template <class T>
-std::span<T> chunk_of(std::span<T> all, std::size_t chunk) {
+
+std::span<const std::uint32_t> chunk_of(std::span<const std::uint32_t> items, std::size_t chunk) {
     const std::size_t begin = chunk * items_per_chunk;
-    return all.subspan(begin, std::min(items_per_chunk, all.size() - begin));
+    return items.subspan(begin, std::min(items_per_chunk, items.size() - begin));
 }
 
 }  // namespace
+
+// The order jumps about in memory, so that boxes are asked for early.
+template <class Body>
+void TileBins::for_each_box(std::span<const std::uint32_t> items, const Body& body) const {
+    constexpr std::size_t early = 24;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (i + early < items.size()) __builtin_prefetch(&boxes_[items[i + early]]);
+        body(items[i], boxes_[items[i]]);
+    }
+}
+
+void TileBins::find_cells(const ScreenCells& cells, const Region& region) {
+    boxes_.resize(std::max(boxes_.size(), cells.tets.size()));
+    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, cells.tets.size(), items_per_chunk),
+                              [&](const auto& range) { find_boxes(cells, region, range.begin(), range.end(), boxes_); });
+    cells_found_ = true;
+}
 
 void TileBins::begin(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
                      std::span<std::uint8_t> extra_drawn, bool opaque) {
@@ -28,7 +47,9 @@ void TileBins::begin(const ScreenCells& cells, const Region& region, std::span<c
     region_ = region;
     items_ = items;
     extra_drawn_ = extra_drawn;
-    boxes_.resize(items.size());
+    boxes_.resize(cells.tets.size() + cells.extra.size());
+    if (cells_found_) find_boxes(cells, region, cells.tets.size(), boxes_.size(), boxes_);
+    boxes_found_ = std::exchange(cells_found_, false);
     chunks_left_ = chunks_to_find_ = (items.size() + items_per_chunk - 1) / items_per_chunk;
     counts_.resize(chunks_left_);
     entries_of_chunk_.resize(chunks_left_);
@@ -39,12 +60,36 @@ void TileBins::begin(const ScreenCells& cells, const Region& region, std::span<c
         for (int x = 0; x < region_side; ++x) full(x, y) = x * tile_side >= region.width || y * tile_side >= region.height;
 }
 
+// Adds to counts[tile] the number of items whose box meets the tile where it is not full. Returns that of whole cells that meet such a tile
+// and no region before this one; sets extra_drawn for other items.
+std::size_t TileBins::count(std::span<const std::uint32_t> items, Counts& counts) {
+    std::size_t drawn = 0;
+    for_each_box(items, [&](std::uint32_t item, const TileBox& box) {
+        bool open = false;
+        for (std::uint32_t y = box.first_y; y <= box.last_y; ++y)
+            for (std::uint32_t x = box.first_x; x <= box.last_x; ++x) {
+                const std::size_t tile = y * region_side + x;
+                counts[tile] += full_[tile] == 0;
+                open |= full_[tile] == 0;
+            }
+        if (!open || !box.begins) return;
+        if (item < cells_->tets.size()) {
+            ++drawn;
+        } else {
+            extra_drawn_[item - cells_->tets.size()] = 1;
+        }
+    });
+    return drawn;
+}
+
 void TileBins::find(std::size_t begin, std::size_t end) {
     std::atomic<std::size_t> drawn = 0;
     oneapi::tbb::parallel_for(begin, end, [&](std::size_t chunk) {
+        const auto items = chunk_of(items_, chunk);
+        if (!boxes_found_) find_boxes(*cells_, region_, items, boxes_);
         Counts& counts = counts_[chunk];
         counts.fill(0);
-        drawn += find_boxes(*cells_, region_, chunk_of(items_, chunk), full_, chunk_of(std::span(boxes_), chunk), counts, extra_drawn_);
+        drawn += count(items, counts);
         entries_of_chunk_[chunk] = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
     });
     drawn_ += drawn;
@@ -67,15 +112,14 @@ void TileBins::fill(std::size_t begin, std::size_t end, std::size_t first_tile, 
     first_[tiles_per_region] = place;
     entries_.resize(std::max<std::size_t>(entries_.size(), place));
     oneapi::tbb::parallel_for(begin, end, [&](std::size_t chunk) {
-        const auto items = chunk_of(items_, chunk);
-        const auto boxes = chunk_of(std::span<const TileBox>(boxes_), chunk);
         Counts& next = places_[chunk - begin];
-        for (std::size_t i = 0; i < items.size(); ++i)
-            for (int y = boxes[i].first_y; y <= boxes[i].last_y; ++y)
-                for (int x = boxes[i].first_x; x <= boxes[i].last_x; ++x) {
-                    const auto tile = static_cast<std::size_t>(y * region_side + x);
-                    if (wanted[tile]) entries_[next[tile]++] = items[i];
+        for_each_box(chunk_of(items_, chunk), [&](std::uint32_t item, const TileBox& box) {
+            for (std::uint32_t y = box.first_y; y <= box.last_y; ++y)
+                for (std::uint32_t x = box.first_x; x <= box.last_x; ++x) {
+                    const std::size_t tile = y * region_side + x;
+                    if (wanted[tile]) entries_[next[tile]++] = item;
                 }
+        });
     });
 }
 

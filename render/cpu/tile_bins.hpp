@@ -16,13 +16,17 @@ namespace cellproj::cpu {
 // only are left out, and when all tiles are full there is no further slab.
 //
 // A slab holds at most `budget` entries of 4 bytes, or what a single chunk of 16,384 items needs where that is more (at most 64 MB,
-// when every one of them covers all tiles of a region). Besides 4 bytes per item and 4 KB per chunk. Memory is kept from view to
-// view. The same lists for any number of threads.
+// when every one of them covers all tiles of a region). Besides 4 bytes per cell or extra tetrahedron and 4 KB per chunk of the order. Memory
+// is kept from view to view. The same lists for any number of threads.
 class TileBins {
 public:
     explicit TileBins(std::size_t budget = std::size_t{1} << 24) : budget_(budget) {}
 
-    // Items, back to front, over a region. The arguments must outlive the slabs. `opaque`: whether tiles may become full.
+    // The boxes of all whole cells over a region, in the order of memory, which is several times faster than in that of the items. For a
+    // begin() of this region that will want most of them; may run while the order is still to be found.
+    void find_cells(const ScreenCells& cells, const Region& region);
+    // Items, back to front, over a region. The arguments must outlive the slabs. `opaque`: whether tiles may become full. Boxes
+    // that were not found before are found slab by slab.
     void begin(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
                std::span<std::uint8_t> extra_drawn, bool opaque);
     // The next slab towards the back; all cores take part. False when there is none left.
@@ -40,6 +44,9 @@ public:
 private:
     using Counts = std::array<std::uint32_t, tiles_per_region>;
 
+    template <class Body>
+    void for_each_box(std::span<const std::uint32_t> items, const Body& body) const;
+    std::size_t count(std::span<const std::uint32_t> items, Counts& counts);
     void find(std::size_t begin, std::size_t end);
     void fill(std::size_t begin, std::size_t end, std::size_t first_tile, std::size_t end_tile);
 
@@ -48,7 +55,9 @@ private:
     Region region_{};
     std::span<const std::uint32_t> items_;
     std::span<std::uint8_t> extra_drawn_;
-    std::vector<TileBox> boxes_;               // #items
+    std::vector<TileBox> boxes_;               // #T + #extra
+    bool cells_found_ = false;                 // by find_cells, for the next begin()
+    bool boxes_found_ = false;                 // boxes_ holds all of them
     std::vector<Counts> counts_;               // per chunk
     std::vector<std::size_t> entries_of_chunk_;
     std::vector<Counts> places_;               // per chunk of a slab: where its next entry goes

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The cells of a tile to its pixels. Cells are small and their pixels few, so lanes are filled twice: blocks of pixels against a
-// cell's planes give fragments, which are packed; then full vectors of fragments, whatever cells they come from, become light;
-// one after the other they are composited. Included once per instruction set, behind Highway; private to kernels.cpp.
+// The cells of a tile to its pixels. Cells are small and their pixels few, so lanes are filled anew at each step: blocks of pixels
+// against a cell's planes give hits, which are packed; full vectors of hits, of whatever cells of a group, become fragments with their scalars
+// and lengths; full vectors of fragments become light; one after the other they are composited. Included once per instruction set,
+// behind Highway; private to kernels.cpp.
 #if defined(CELLPROJ_TILE_DRAWING_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CELLPROJ_TILE_DRAWING_INL
 #undef CELLPROJ_TILE_DRAWING_INL
@@ -15,16 +16,36 @@ namespace cellproj::cpu::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Where rays meet the cells of a group.
+struct Hits {
+    static constexpr std::size_t capacity = 1024;
+    static constexpr std::size_t length = capacity + CellPlanes::columns;  // packing writes whole vectors
+
+    HWY_ALIGN float front[length], back[length];  // nearness, relative to that of the cell's first corner
+    // The pixel's place in the cell's box, x + tile_side·y, and above that the cell's column.
+    HWY_ALIGN std::int32_t place[length];
+    std::size_t count = 0;
+};
+constexpr int column_shift = 10;
+static_assert(tile_side == 1 << (column_shift / 2));
+
 // Segments of rays in cells, in drawing order.
 struct Fragments {
     static constexpr std::size_t capacity = 1024;
-    using List = float[capacity + CellPlanes::columns];  // packing writes whole vectors
+    static constexpr std::size_t length_of_list = capacity + CellPlanes::columns;
 
-    HWY_ALIGN List front, back;                                       // scalars
-    HWY_ALIGN List length;                                            // along the axis of the view [scene units]
-    HWY_ALIGN List key;                                               // for pixels that sort: the middle's nearness
-    HWY_ALIGN std::int32_t pixel[capacity + CellPlanes::columns];     // x + tile_side·y
+    HWY_ALIGN float front[length_of_list], back[length_of_list];  // scalars
+    HWY_ALIGN float length[length_of_list];                       // along the axis of the view [scene units]
+    HWY_ALIGN float key[length_of_list];                          // for pixels that sort: the middle's nearness
+    HWY_ALIGN std::int32_t pixel[length_of_list];                 // x + tile_side·y
     std::size_t count = 0;
+    float lowest = 1, highest = 0;  // scalars of all of them
+
+    void clear() {
+        count = 0;
+        lowest = 1;
+        highest = 0;
+    }
 };
 
 // What a task needs while it draws a tile.
@@ -33,6 +54,7 @@ struct TileState {
     std::uint32_t open[tile_side];                   // per row: bit x is set while something can still be seen there
     bool some_closed = false;
     float x, y;                                      // the first pixel centre
+    Hits hits;
     Fragments fragments;
     CellPlanes planes;
     Corners corners;
@@ -46,125 +68,197 @@ HWY_INLINE LightOf<V> shade(D d, const Shading& shading, bool constant, V s_f, V
     return shading.half_opacity ? half_opacity(d, light) : light;
 }
 
-// Composites the fragments behind what is there, in their order, and forgets them.
-template <class D>
-HWY_NOINLINE void composite(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
+// Puts the light of some of a vector's fragments behind what there is at their pixels, one after the other.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void blend(D d, const LightOf<V>& l, const std::int32_t* pixel, std::size_t count, TileState& tile) {
+    HWY_ALIGN float light[4 * CellPlanes::columns];
+    hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
+    const auto blend_one = [&](std::size_t i) HWY_ATTR {
+        float* rgba = tile.rgba[pixel[i]];
+        const float transmitted = 1.0F - rgba[3];
+        for (std::size_t channel = 0; channel < 4; ++channel) rgba[channel] += transmitted * light[4 * i + channel];
+    };
+    if (count == hn::Lanes(d)) {
+        for (std::size_t i = 0; i < hn::Lanes(d); ++i) blend_one(i);
+    } else {
+        for (std::size_t i = 0; i < count; ++i) blend_one(i);
+    }
+}
+
+// Composites the fragments behind what is there, in their order. light_of(s_f, s_b, length): scalars 0..1, lengths along the ray.
+template <class D, class LightOfSegments>
+HWY_INLINE void composite_as(D d, const View& view, TileState& tile, const LightOfSegments& light_of) {
     const hn::RebindToSigned<D> di;
     using V = hn::Vec<D>;
-    Fragments& f = tile.fragments;
+    const Fragments& f = tile.fragments;
     const std::size_t lanes = hn::Lanes(d);
-    const bool constant = !cells.cell_scalars.empty();
-    const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-    for (std::size_t i = 0; i < lanes; ++i) {  // the last vector may be part empty
-        f.front[f.count + i] = f.back[f.count + i] = f.length[f.count + i] = 0.0F;
-        f.pixel[f.count + i] = 0;
-    }
-    HWY_ALIGN float light[4 * CellPlanes::columns];
-    const auto unit = hn::Set(d, cells.view.unit_per_pixel);
+    const V one = hn::Set(d, 1.0F), unit = hn::Set(d, view.unit_per_pixel);
     for (std::size_t begin = 0; begin < f.count; begin += lanes) {
         V length = hn::Load(d, f.length + begin);
-        if (cells.view.perspective) {  // from the axis to the ray
+        if (view.perspective) {  // from the axis to the ray
             const auto pixel = hn::Load(di, f.pixel + begin);
             const V x = hn::Add(hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_side - 1))), hn::Set(d, tile.x));
             const V y = hn::Add(hn::ConvertTo(d, hn::ShiftRight<5>(pixel)), hn::Set(d, tile.y));
             const V u = hn::Mul(x, unit), v = hn::Mul(y, unit);
             length = hn::Mul(length, hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one))));
         }
-        const V s_f = hn::Min(hn::Max(hn::Load(d, f.front + begin), zero), one);
-        const V s_b = hn::Min(hn::Max(hn::Load(d, f.back + begin), zero), one);
-        const LightOf<V> l = shade(d, shading, constant, s_f, s_b, length);
-        hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
-        const std::size_t end = HWY_MIN(lanes, f.count - begin);
-        for (std::size_t i = 0; i < end; ++i) {
-            float* rgba = tile.rgba[f.pixel[begin + i]];
-            const float transmitted = 1.0F - rgba[3];
-            for (std::size_t channel = 0; channel < 4; ++channel) rgba[channel] += transmitted * light[4 * i + channel];
-        }
+        blend(d, light_of(hn::Load(d, f.front + begin), hn::Load(d, f.back + begin), length), f.pixel + begin, HWY_MIN(lanes, f.count - begin),
+              tile);
     }
-    f.count = 0;
 }
 
-// The fragments of one cell of the group.
-template <bool perspective, bool constant, bool keyed, class D>
-HWY_INLINE void add_fragments(D d, const View& view, const CellPlanes& cell, std::size_t k, TileState& tile) {
-    const hn::RebindToSigned<D> di;
-    const hn::RebindToUnsigned<D> du;
+// The piece that all of the fragments lie in, or -1.
+HWY_INLINE std::int32_t common_piece(const PieceArrays& table, const Fragments& f) {
+    const std::int32_t piece = piece_of(table, f.lowest);
+    return f.highest < table.end[static_cast<std::size_t>(piece)] ? piece : -1;
+}
+
+// Composites the fragments by the scene's method, and forgets them.
+template <class D>
+HWY_NOINLINE void composite(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
     using V = hn::Vec<D>;
     Fragments& f = tile.fragments;
-    // Lanes are pixels: a block of up to four in a row.
-    constexpr int block_width = HWY_MIN(4, static_cast<int>(hn::MaxLanes(D())));
+    if (f.count == 0) return;
+    for (std::size_t i = 0; i < hn::Lanes(d); ++i) {  // the last vector may be part empty
+        f.front[f.count + i] = f.back[f.count + i] = f.length[f.count + i] = 0.0F;
+        f.pixel[f.count + i] = 0;
+    }
+    const bool constant = !cells.cell_scalars.empty();
+    const std::int32_t piece = shading.pieces && shading.pieces->mean_place && !constant && !shading.half_opacity ? common_piece(*shading.pieces, f) : -1;
+    if (piece >= 0) {
+        const LightInPiece<D> light_in(d, *shading.pieces, piece);
+        composite_as(d, cells.view, tile, [&](V s_f, V s_b, V length) HWY_ATTR {
+            V depth;
+            const LightOf<V> light = light_in(s_f, s_b, length, depth);
+            if (HWY_LIKELY(hn::AllTrue(d, hn::Le(depth, hn::Set(d, mean_place_depth))))) return light;
+            return light_of_walk(d, *shading.pieces, s_f, s_b, length);
+        });
+    } else {
+        composite_as(d, cells.view, tile, [&](V s_f, V s_b, V length) HWY_ATTR { return shade(d, shading, constant, s_f, s_b, length); });
+    }
+    f.clear();
+}
+
+// The faces of a cell, by the bits of those that look towards the eye: these first.
+inline constexpr std::uint8_t faces_by_side[16][4]{{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 1, 3},
+                                                   {1, 2, 0, 3}, {0, 1, 2, 3}, {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
+                                                   {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+
+// The hits of one cell of the group, the one in column k. At least one of its faces looks towards the eye, and one away.
+HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits) {
+    // Lanes are pixels: blocks of up to 4 by 2. Of larger ones a cell would miss more, and packing them costs as much more.
+    const hn::CappedTag<float, 8> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    using V = hn::Vec<decltype(d)>;
+    constexpr int block_width = HWY_MIN(4, static_cast<int>(hn::MaxLanes(hn::CappedTag<float, 8>())));
     const int block_height = static_cast<int>(hn::Lanes(d)) / block_width;
     const auto lane = hn::Iota(di, 0);
     const auto lane_x = hn::And(lane, hn::Set(di, block_width - 1));
     const auto lane_y = hn::ShiftRight<block_width == 4 ? 2 : 0>(hn::Sub(lane, lane_x));
     const V step_x = hn::ConvertTo(d, lane_x), step_y = hn::ConvertTo(d, lane_y);
-    const auto lane_pixel = hn::Add(lane_x, hn::ShiftLeft<5>(lane_y));
+    const auto lane_place = hn::Add(hn::Add(lane_x, hn::ShiftLeft<column_shift / 2>(lane_y)), hn::Set(di, static_cast<int>(k) << column_shift));
 
-    const int width = cell.width[k], height = cell.height[k];
-    V nearness[4];
-    hn::Mask<D> towards_eye[4];
-    for (std::size_t face = 0; face < 4; ++face) {
-        nearness[face] = hn::MulAdd(hn::Set(d, cell.slope_x[face][k]), step_x,
-                                    hn::MulAdd(hn::Set(d, cell.slope_y[face][k]), step_y, hn::Set(d, cell.nearness[face][k])));
-        towards_eye[face] = hn::RebindMask(d, hn::Ne(hn::Set(du, cell.towards_eye[face][k]), hn::Zero(du)));
+    // The first face is a front, the last one a back; those between may be either.
+    const std::uint32_t fronts = cell.front_faces[k];
+    const auto is_front = [&](std::size_t i) HWY_ATTR {
+        return hn::RebindMask(d, hn::Ne(hn::Set(di, static_cast<std::int32_t>(fronts >> faces_by_side[fronts][i] & 1U)), hn::Zero(di)));
+    };
+    const auto front_1 = is_front(1), front_2 = is_front(2), back_1 = hn::Not(front_1), back_2 = hn::Not(front_2);
+    V at_left[4], right[4], down[4];  // nearness in the block of pixels at the left end; its change from block to block
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t face = faces_by_side[fronts][i];
+        right[i] = hn::Set(d, cell.slope_x[face][k]);
+        down[i] = hn::Set(d, cell.slope_y[face][k]);
+        at_left[i] = hn::MulAdd(right[i], step_x, hn::MulAdd(down[i], step_y, hn::Set(d, cell.nearness[face][k])));
     }
     const V nearest = hn::Set(d, cell.nearest[k]), farthest = hn::Set(d, cell.farthest[k]);
 
+    const int width = cell.width[k], height = cell.height[k];
+    std::size_t count = hits.count;
     for (int y = 0; y < height; y += block_height) {
-        const V inside_y = hn::Set(d, static_cast<float>(height - y)), offset_y = hn::Set(d, static_cast<float>(y));
+        const V offset_y = hn::Set(d, static_cast<float>(y));
+        const auto in_rows = hn::Lt(lane_y, hn::Set(di, height - y));
+        V at_row[4];
+        for (std::size_t i = 0; i < 4; ++i) at_row[i] = hn::MulAdd(down[i], offset_y, at_left[i]);
         for (int x = 0; x < width; x += block_width) {
             const V offset_x = hn::Set(d, static_cast<float>(x));
-            V front = nearest, back = farthest;
-            for (std::size_t face = 0; face < 4; ++face) {
-                const V n = hn::MulAdd(hn::Set(d, cell.slope_x[face][k]), offset_x,
-                                       hn::MulAdd(hn::Set(d, cell.slope_y[face][k]), offset_y, nearness[face]));
-                front = hn::IfThenElse(towards_eye[face], hn::Min(front, n), front);
-                back = hn::IfThenElse(towards_eye[face], back, hn::Max(back, n));
-            }
-            const auto in_box = hn::And(hn::Lt(step_x, hn::Set(d, static_cast<float>(width - x))), hn::Lt(step_y, inside_y));
-            const auto hit = hn::And(hn::Gt(front, back), in_box);
-            const std::size_t hits = hn::CountTrue(d, hit);
-            if (hits == 0) continue;
-
-            V length = hn::Sub(front, back), depth_front = hn::Set(d, 1.0F), depth_back = depth_front;
-            if constexpr (perspective) {
-                const V base = hn::Set(d, cell.base[k]);
-                const V w_front = hn::Add(base, front), w_back = hn::Add(base, back);
-                const V both = hn::Div(hn::Set(d, 1.0F), hn::Mul(w_front, w_back));
-                depth_front = hn::Mul(w_back, both);
-                depth_back = hn::Mul(w_front, both);
-                // What begins at the near plane has been cut there, and is drawn from the eye on.
-                length = hn::IfThenElse(hn::Gt(w_front, hn::Set(d, view.near_plane)), depth_back, hn::Mul(length, both));
-            }
-            hn::StoreU(hn::Compress(length, hit), d, f.length + f.count);
-            if constexpr (keyed) {
-                const V middle = hn::MulAdd(hn::Set(d, 0.5F), hn::Add(front, back), hn::Set(d, cell.base[k]));
-                hn::StoreU(hn::Compress(middle, hit), d, f.key + f.count);
-            }
-            const int first_pixel = cell.left[k] + x + tile_side * (cell.top[k] + y);
-            hn::StoreU(hn::Compress(hn::Add(lane_pixel, hn::Set(di, first_pixel)), hn::RebindMask(di, hit)), di, f.pixel + f.count);
-            const V first = hn::Set(d, cell.first_scalar[k]);
-            if constexpr (constant) {
-                hn::StoreU(first, d, f.front + f.count);
-                hn::StoreU(first, d, f.back + f.count);
-            } else {
-                const V px = hn::Add(step_x, offset_x), py = hn::Add(step_y, offset_y);
-                const V across = hn::MulAdd(hn::Set(d, cell.scalar_x[k]), px,
-                                            hn::MulAdd(hn::Set(d, cell.scalar_y[k]), py, hn::Set(d, cell.scalar[k])));
-                const V along = hn::Set(d, cell.scalar_n[k]);
-                const V low = hn::Set(d, cell.lowest[k]), high = hn::Set(d, cell.highest[k]);
-                const V s_f = hn::MulAdd(hn::MulAdd(along, front, across), depth_front, first);
-                const V s_b = hn::MulAdd(hn::MulAdd(along, back, across), depth_back, first);
-                hn::StoreU(hn::Compress(hn::Min(hn::Max(s_f, low), high), hit), d, f.front + f.count);
-                hn::StoreU(hn::Compress(hn::Min(hn::Max(s_b, low), high), hit), d, f.back + f.count);
-            }
-            f.count += hits;
+            const auto on_face = [&](std::size_t i) HWY_ATTR { return hn::MulAdd(right[i], offset_x, at_row[i]); };
+            const V one = on_face(1), two = on_face(2);
+            V front = hn::Min(nearest, on_face(0)), back = hn::Max(farthest, on_face(3));
+            front = hn::IfThenElse(front_1, hn::Min(front, one), front);
+            back = hn::IfThenElse(back_1, hn::Max(back, one), back);
+            front = hn::IfThenElse(front_2, hn::Min(front, two), front);
+            back = hn::IfThenElse(back_2, hn::Max(back, two), back);
+            const auto in_box = hn::And(hn::Lt(lane_x, hn::Set(di, width - x)), in_rows);
+            const auto hit = hn::And(hn::Gt(front, back), hn::RebindMask(d, in_box));
+            hn::StoreU(hn::Compress(front, hit), d, hits.front + count);
+            hn::StoreU(hn::Compress(back, hit), d, hits.back + count);
+            hn::StoreU(hn::Compress(hn::Add(lane_place, hn::Set(di, x + tile_side * y)), hn::RebindMask(di, hit)), di, hits.place + count);
+            count += hn::CountTrue(d, hit);
         }
     }
+    hits.count = count;
+}
+
+// The hits of the group as fragments, of which there is room for as many.
+template <bool perspective, bool constant, bool keyed, class D>
+HWY_NOINLINE void add_fragments(D d, const View& view, const CellPlanes& cell, Hits& hits, Fragments& fragments) {
+    const hn::RebindToSigned<D> di;
+    using V = hn::Vec<D>;
+    const V one = hn::Set(d, 1.0F);
+    const auto low_bits = hn::Set(di, tile_side - 1);
+    Fragments& f = fragments;
+    const std::size_t lanes = hn::Lanes(d);
+    if (hits.count == 0) return;
+    const std::int32_t last = hits.place[hits.count - 1];
+    for (std::size_t i = 0; i < lanes; ++i) hits.place[hits.count + i] = last;  // the last vector may be part empty
+    V lowest = hn::Set(d, f.lowest), highest = hn::Set(d, f.highest);
+    for (std::size_t begin = 0, to = f.count; begin < hits.count; begin += lanes, to += lanes) {
+        const V front = hn::Load(d, hits.front + begin), back = hn::Load(d, hits.back + begin);
+        const auto place = hn::Load(di, hits.place + begin);
+        const auto column = hn::IndicesFromVec(d, hn::ShiftRight<column_shift>(place));
+        const auto of_cell = [&](const CellPlanes::Row& row) HWY_ATTR { return hn::TableLookupLanes(hn::Load(d, row), column); };
+        const auto x = hn::And(place, low_bits), y = hn::And(hn::ShiftRight<column_shift / 2>(place), low_bits);
+        const auto first_pixel = hn::TableLookupLanes(hn::Load(di, cell.first_pixel), hn::IndicesFromVec(di, hn::ShiftRight<column_shift>(place)));
+        hn::StoreU(hn::Add(first_pixel, hn::And(place, hn::Set(di, tile_side * tile_side - 1))), di, f.pixel + to);
+
+        V length = hn::Sub(front, back), depth_front = one, depth_back = one;
+        if constexpr (perspective) {
+            const V base = of_cell(cell.base);
+            const V w_front = hn::Add(base, front), w_back = hn::Add(base, back);
+            const V both = hn::Div(one, hn::Mul(w_front, w_back));
+            depth_front = hn::Mul(w_back, both);
+            depth_back = hn::Mul(w_front, both);
+            // What begins at the near plane has been cut there, and is drawn from the eye on.
+            length = hn::IfThenElse(hn::Gt(w_front, hn::Set(d, view.near_plane)), depth_back, hn::Mul(length, both));
+        }
+        hn::StoreU(length, d, f.length + to);
+        if constexpr (keyed) hn::StoreU(hn::MulAdd(hn::Set(d, 0.5F), hn::Add(front, back), of_cell(cell.base)), d, f.key + to);
+        const V first = of_cell(cell.first_scalar);
+        if constexpr (constant) {
+            hn::StoreU(first, d, f.front + to);
+            hn::StoreU(first, d, f.back + to);
+        } else {
+            const V across = hn::MulAdd(of_cell(cell.scalar_x), hn::ConvertTo(d, x),
+                                        hn::MulAdd(of_cell(cell.scalar_y), hn::ConvertTo(d, y), of_cell(cell.scalar)));
+            const V along = of_cell(cell.scalar_n), low = of_cell(cell.lowest), high = of_cell(cell.highest);
+            const V s_f = hn::MulAdd(hn::MulAdd(along, front, across), depth_front, first);
+            const V s_b = hn::MulAdd(hn::MulAdd(along, back, across), depth_back, first);
+            hn::StoreU(hn::Min(hn::Max(s_f, low), high), d, f.front + to);
+            hn::StoreU(hn::Min(hn::Max(s_b, low), high), d, f.back + to);
+            lowest = hn::Min(lowest, low);
+            highest = hn::Max(highest, high);
+        }
+    }
+    f.lowest = hn::GetLane(hn::MinOfLanes(d, lowest));
+    f.highest = hn::GetLane(hn::MaxOfLanes(d, highest));
+    f.count += hits.count;
+    hits.count = 0;
 }
 
 // False when nothing can be seen any more anywhere in the tile.
 HWY_INLINE bool close_pixels(TileState& tile, float opaque, int width, int height) {
+    if (opaque >= 1.0F) return true;
     bool any_open = false;
     for (int y = 0; y < height; ++y) {
         std::uint32_t open = tile.open[y];
@@ -189,6 +283,27 @@ HWY_INLINE void prefetch_points(const ScreenCells& cells, const std::uint32_t* i
         for (const VertexId v : cells.corners(items[i])) hwy::Prefetch(&cells.points[v]);
 }
 
+// The fragments of a group of cells, in its order. Calls make_room() when the list is to be emptied.
+template <bool perspective, bool constant, bool keyed, class D, class MakeRoom>
+HWY_INLINE void add_group(D d, const ScreenCells& cells, const std::uint32_t* group, std::size_t count, const Tile& target,
+                          TileState& tile, const MakeRoom& make_room) {
+    make_planes<perspective, constant>(d, cells, group, count, tile.x, tile.y, target.width, target.height, tile.corners,
+                                       tile.planes);
+    const auto finish_hits = [&]() HWY_ATTR {
+        if (tile.fragments.count + tile.hits.count > Fragments::capacity) make_room();
+        add_fragments<perspective, constant, keyed>(d, cells.view, tile.planes, tile.hits, tile.fragments);
+    };
+    for (std::size_t k = 0; k < count; ++k) {
+        if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0) continue;
+        if (tile.planes.front_faces[k] == 0 || tile.planes.front_faces[k] == 15) continue;  // no volume
+        if (tile.some_closed && !meets_open_pixel(tile, tile.planes, k)) continue;
+        const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
+        if (tile.hits.count + most > Hits::capacity) finish_hits();
+        find_hits(tile.planes, k, tile.hits);
+    }
+    finish_hits();
+}
+
 template <bool perspective, bool constant>
 HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, const Tile& target,
                             std::span<const std::uint32_t> items, TileState& tile) {
@@ -205,32 +320,24 @@ HWY_INLINE std::size_t draw(const ScreenCells& cells, const Shading& shading, co
         for (std::size_t i = 0; i < HWY_MIN(lanes, left); ++i) hwy::Prefetch(cells.corners(items[left - 1 - i]).data());
         return count;
     };
+    const auto composite_all = [&]() HWY_ATTR {
+        fragments += tile.fragments.count;
+        since_closing += tile.fragments.count;
+        composite(d, cells, shading, tile);
+    };
     std::size_t next_count = read(next);
     while (seen && next_count > 0) {
         const std::size_t count = next_count;
         std::memcpy(group, next, sizeof group);
         next_count = read(next);
         prefetch_points(cells, next, next_count);
-        make_planes<perspective, constant>(d, cells, group, count, tile.x, tile.y, target.width, target.height, tile.corners,
-                                           tile.planes);
-        for (std::size_t k = 0; k < count; ++k) {
-            if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0) continue;
-            if (tile.some_closed && !meets_open_pixel(tile, tile.planes, k)) continue;
-            const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
-            if (tile.fragments.count + most > Fragments::capacity) {
-                fragments += tile.fragments.count;
-                since_closing += tile.fragments.count;
-                composite(d, cells, shading, tile);
-                if (since_closing > 4 * Fragments::capacity) {
-                    since_closing = 0;
-                    seen = close_pixels(tile, shading.opaque, target.width, target.height);
-                }
-            }
-            add_fragments<perspective, constant, false>(d, cells.view, tile.planes, k, tile);
+        add_group<perspective, constant, false>(d, cells, group, count, target, tile, composite_all);
+        if (since_closing > 4 * Fragments::capacity) {
+            since_closing = 0;
+            seen = close_pixels(tile, shading.opaque, target.width, target.height);
         }
     }
-    fragments += tile.fragments.count;
-    composite(d, cells, shading, tile);
+    composite_all();
     return fragments;
 }
 
@@ -256,7 +363,7 @@ HWY_INLINE void move_to_pending(Fragments& from, PendingFragments& to) {
     append(to.length, from.length);
     append(to.key, from.key);
     append(to.pixel, from.pixel);
-    from.count = 0;
+    from.clear();
 }
 
 // Composites the pending fragments whose key is at least `nearest`, pixel by pixel from front to back; the others stay.
@@ -298,6 +405,8 @@ HWY_NOINLINE void composite_pending(D d, const ScreenCells& cells, const Shading
             f.back[f.count] = pending.back[fragment];
             f.length[f.count] = pending.length[fragment];
             f.pixel[f.count] = pending.pixel[fragment];
+            f.lowest = HWY_MIN(f.lowest, HWY_MIN(f.front[f.count], f.back[f.count]));
+            f.highest = HWY_MAX(f.highest, HWY_MAX(f.front[f.count], f.back[f.count]));
             if (++f.count == Fragments::capacity) composite(d, cells, shading, tile);
         }
     }
@@ -322,32 +431,23 @@ HWY_INLINE std::size_t draw_by_pixels(const ScreenCells& cells, const Shading& s
     find_nearest(cells, items, lanes, pending.nearest);
     std::size_t fragments = 0, enough = 8 * Fragments::capacity;
     bool seen = close_pixels(tile, shading.opaque, target.width, target.height);
+    const auto keep = [&]() HWY_ATTR {
+        fragments += tile.fragments.count;
+        move_to_pending(tile.fragments, pending);
+    };
     std::size_t left = items.size();
     for (std::size_t group = 0; seen && left > 0; ++group) {
         std::uint32_t of_group[CellPlanes::columns];
         const std::size_t count = HWY_MIN(lanes, left);
         for (std::size_t i = 0; i < count; ++i) of_group[i] = items[--left];
-        make_planes<perspective, constant>(d, cells, of_group, count, tile.x, tile.y, target.width, target.height, tile.corners,
-                                           tile.planes);
-        for (std::size_t k = 0; k < count; ++k) {
-            if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0) continue;
-            if (tile.some_closed && !meets_open_pixel(tile, tile.planes, k)) continue;
-            const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
-            if (tile.fragments.count + most > Fragments::capacity) {
-                fragments += tile.fragments.count;
-                move_to_pending(tile.fragments, pending);
-            }
-            add_fragments<perspective, constant, true>(d, cells.view, tile.planes, k, tile);
-        }
+        add_group<perspective, constant, true>(d, cells, of_group, count, target, tile, keep);
         if (pending.key.size() < enough) continue;
-        fragments += tile.fragments.count;
-        move_to_pending(tile.fragments, pending);
+        keep();
         composite_pending(d, cells, shading, tile, pending, pending.nearest[group + 1]);
         seen = close_pixels(tile, shading.opaque, target.width, target.height);
         enough = HWY_MAX(8 * Fragments::capacity, 2 * pending.key.size());
     }
-    fragments += tile.fragments.count;
-    move_to_pending(tile.fragments, pending);
+    keep();
     composite_pending(d, cells, shading, tile, pending, -1e35F);
     return fragments;
 }
