@@ -366,6 +366,7 @@ public:
                  const NearnessFrame& frame)
         : stream_(stream), outline_(make_outline(corners.vertices, stream.transform_.perspective())) {
         if (outline_.triangle_count == 0) return;
+        std::array<double, 4> scalars;
         for (std::size_t c = 0; c < 4; ++c) {
             std::array<FaceCorner, 3> face;
             for (std::size_t i = 0; i < 3; ++i) {
@@ -374,15 +375,26 @@ public:
             }
             faces_[c] = make_surface_face(face, stream.transform_.size());
             const ScreenVertex& v = corners.vertices[c];
-            scalars_[c] = static_cast<float>(frame.perspective ? v.scalar / v.depth : v.scalar);
+            scalars[c] = frame.perspective ? v.scalar / v.depth : v.scalar;
+            scalars_[c] = static_cast<float>(scalars[c]);
         }
         const CellSpan span = stream.span_of(corners.vertices);
-        const SurfaceCells::Range range =
-            surfaces.between(std::ranges::min(scalars_), std::ranges::max(scalars_));
+        const SurfaceCells::Range range = surfaces.between(std::ranges::min(scalars_), std::ranges::max(scalars_));
         vertex_.first = static_cast<float>(range.first);
         vertex_.last = static_cast<float>(range.last);
         vertex_.depth_range = static_cast<float>(outline_.base_is_front ? span.far - span.near : span.near - span.far);
-        if (range.first < range.last) set_gradient(corners.whole ? places_of(corners, frame) : places_of(cell, frame), surfaces.gradients(cell));
+        const AffineMap<double> scalar = make_scalar_map(places_of(corners, 1.0, frame), scalars);
+        vertex_.maps[0].scalar = static_cast<float>(scalar.value);
+        for (std::size_t slope = 0; slope < 3; ++slope) vertex_.maps[slope + 1].scalar = static_cast<float>(scalar.slopes[slope]);
+        if (range.first == range.last) return;
+        // Of a piece of a cell, the cell's corners may lie where nothing is on the screen.
+        const auto places = corners.whole ? places_of(corners, 0.0, frame) : places_of(cell, frame);
+        const AffineMap<glm::dvec3> gradient = make_gradient_map(places, surfaces.gradients(cell));
+        for (int axis = 0; axis < 3; ++axis) {
+            vertex_.maps[0].gradient[axis] = static_cast<float>(gradient.value[axis]);
+            for (std::size_t slope = 0; slope < 3; ++slope)
+                vertex_.maps[slope + 1].gradient[axis] = static_cast<float>(gradient.slopes[slope][axis]);
+        }
     }
 
     const Silhouette& silhouette() const { return outline_; }
@@ -408,32 +420,24 @@ public:
     }
 
 private:
-    // From the frame's farthest point on. Where the rasterizer has the corners: in a sliver, a place beside it has other weights.
-    std::array<glm::dvec3, 4> places_of(const Corners& corners, const NearnessFrame& frame) const {
+    // In eye space, from the frame's farthest point on. `back` 0: where the rasterizer has the corners, for what is mixed by weights
+    // (in a sliver, a place beside it has other ones); 1: where they were, for what is to stay there.
+    std::array<glm::dvec3, 4> places_of(const Corners& corners, double back, const NearnessFrame& frame) const {
         const ScreenTransform& transform = stream_.transform_;
         std::array<glm::dvec3, 4> places;
         for (std::size_t i = 0; i < 4; ++i) {
             const ScreenVertex& v = corners.vertices[i];
             const double depth = frame.perspective ? 1.0 / v.depth : v.depth;
-            const glm::dvec2 across = (v.position - transform.principal_point()) / transform.pixels_per_unit();
+            const glm::dvec2 across = (v.position - back * corners.moved[i] - transform.principal_point()) / transform.pixels_per_unit();
             places[i] = {across * (frame.perspective ? depth : 1.0), depth - frame.far_depth()};
         }
         return places;
     }
-    // A cell of which this is a piece lies partly where nothing is on the screen.
     std::array<glm::dvec3, 4> places_of(CellId cell, const NearnessFrame& frame) const {
         const EyeCorners corners = stream_.eye_corners(cell);
         std::array<glm::dvec3, 4> places;
         for (std::size_t i = 0; i < 4; ++i) places[i] = corners.vertices[i].position - glm::dvec3(0.0, 0.0, frame.far_depth());
         return places;
-    }
-
-    void set_gradient(const std::array<glm::dvec3, 4>& places, const std::array<glm::dvec3, 4>& gradients) {
-        const GradientMap map = make_gradient_map(places, gradients);
-        for (int axis = 0; axis < 3; ++axis) {
-            vertex_.gradient[0][axis] = static_cast<float>(map.value[axis]);
-            for (std::size_t slope = 0; slope < 3; ++slope) vertex_.gradient[slope + 1][axis] = static_cast<float>(map.slopes[slope][axis]);
-        }
     }
 
     const CellStream& stream_;

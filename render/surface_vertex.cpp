@@ -19,6 +19,27 @@ constexpr double steepest_slope = 1e6;
 float held(double x) { return static_cast<float>(std::clamp(x, -1e30, 1e30)); }
 
 double largest_part(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double largest_part(double x) { return std::abs(x); }
+
+// Values of about 1.
+template <class Value>
+AffineMap<Value> make_map(const std::array<glm::dvec3, 4>& places, const std::array<Value, 4>& values) {
+    const glm::dvec3 a = places[1] - places[0], b = places[2] - places[0], c = places[3] - places[0];
+    const glm::dvec3 bc = glm::cross(b, c);
+    const double volume = glm::dot(a, bc);
+    const std::array weights{bc / volume, glm::cross(c, a) / volume, glm::cross(a, b) / volume};  // ∇ of the barycentric ones
+    AffineMap<Value> map;
+    double steepest = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        auto& slope = map.slopes[static_cast<std::size_t>(axis)];
+        for (std::size_t i = 0; i < 3; ++i) slope += (values[i + 1] - values[0]) * weights[i][axis];
+        const double part = largest_part(slope);
+        steepest = std::isfinite(part) ? std::max(steepest, part) : 2.0 * steepest_slope;
+    }
+    if (!(steepest <= steepest_slope)) return {0.25 * (values[0] + values[1] + values[2] + values[3]), {}};
+    map.value = values[0] - (places[0].x * map.slopes[0] + places[0].y * map.slopes[1] + places[0].z * map.slopes[2]);
+    return map;
+}
 
 }  // namespace
 
@@ -52,28 +73,17 @@ SurfaceFace make_surface_face(std::array<FaceCorner, 3> corners, ImageSize size)
     return face;
 }
 
-GradientMap make_gradient_map(const std::array<glm::dvec3, 4>& places, const std::array<glm::dvec3, 4>& gradients) {
+AffineMap<glm::dvec3> make_gradient_map(const std::array<glm::dvec3, 4>& places, const std::array<glm::dvec3, 4>& gradients) {
     double largest = 0.0;
     for (const glm::dvec3& g : gradients) largest = std::max(largest, largest_part(g));
-    GradientMap map;
-    if (!(largest > 0.0)) return map;
-    std::array<glm::dvec3, 4> g;
-    for (std::size_t i = 0; i < 4; ++i) g[i] = gradients[i] / largest;
+    if (!(largest > 0.0)) return {};
+    std::array<glm::dvec3, 4> scaled;
+    for (std::size_t i = 0; i < 4; ++i) scaled[i] = gradients[i] / largest;
+    return make_map(places, scaled);
+}
 
-    const glm::dvec3 a = places[1] - places[0], b = places[2] - places[0], c = places[3] - places[0];
-    const glm::dvec3 bc = glm::cross(b, c);
-    const double volume = glm::dot(a, bc);
-    const std::array weights{bc / volume, glm::cross(c, a) / volume, glm::cross(a, b) / volume};  // ∇ of the barycentric ones
-    double steepest = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-        auto& slope = map.slopes[static_cast<std::size_t>(axis)];
-        for (std::size_t i = 0; i < 3; ++i) slope += (g[i + 1] - g[0]) * weights[i][axis];
-        const double part = largest_part(slope);
-        steepest = std::isfinite(part) ? std::max(steepest, part) : 2.0 * steepest_slope;
-    }
-    if (steepest > steepest_slope) return {0.25 * (g[0] + g[1] + g[2] + g[3]), {}};
-    map.value = g[0] - (places[0].x * map.slopes[0] + places[0].y * map.slopes[1] + places[0].z * map.slopes[2]);
-    return map;
+AffineMap<double> make_scalar_map(const std::array<glm::dvec3, 4>& places, const std::array<double, 4>& scalars) {
+    return make_map(places, scalars);
 }
 
 }  // namespace cellproj

@@ -5,9 +5,9 @@
 // A surface may neither be lost nor met twice where a ray goes from one cell to the next. So both must hold the same number for the
 // scalar on their common face, to the bit: a vertex carries the faces of its cell, each made of its three corners in an order
 // and about an origin that do not depend on the cell, and the fragment does the same arithmetic on each of them. Faces are those
-// of the corners where the rasterizer has them: so no segment comes out negative, faces meet at their edges, and what is seen is a mesh whose
-// points lie up to 1/512 of a pixel beside their places, with their scalars. (cell_stream.hpp's other vertices leave depths and scalars
-// where they were, which is more accurate for a medium, but no chain of segments.)
+// of the corners where the rasterizer has them, with their scalars: so no segment comes out negative, faces meet at their edges, and which
+// surfaces are met is what a mesh has whose points lie up to 1/512 of a pixel beside their places. Where in the segment they are met,
+// and which medium is around them, is told by the cell's own field, which stays in place.
 #pragma once
 
 #include <array>
@@ -46,7 +46,9 @@ struct SurfaceVertex {
     float scalars[4];       // normalized, of the corner opposite to each face
     float first, last;      // isosurfaces that can be in the cell: first <= i < last
     float depth_range;      // largest minus smallest depth; negative when the base is the back
-    float gradient[4][3];   // GradientMap: value, slopes
+    struct {
+        float gradient[3], scalar;
+    } maps[4];              // AffineMap of each: value, slopes
 };
 
 struct FaceCorner {
@@ -60,15 +62,20 @@ SurfaceFace make_surface_face(std::array<FaceCorner, 3> corners, ImageSize size)
 // The pixel of a picture nearest to a place, its centre.
 glm::dvec2 nearest_pixel(const glm::dvec2& place, ImageSize size);
 
-// The gradient in a cell, linear in between the corners (RKE00 §8, EKE01 §5.3), up to a factor > 0 that is the same all over it.
-struct GradientMap {
-    glm::dvec3 value{0.0};                // at the place from which the corners' places count
-    std::array<glm::dvec3, 3> slopes{};  // per length along x, y and z
+// What is linear in a cell.
+template <class Value>
+struct AffineMap {
+    Value value{0.0};                // at the place from which the corners' places count
+    std::array<Value, 3> slopes{};  // per length along x, y and z
 
-    glm::dvec3 at(const glm::dvec3& place) const { return value + place.x * slopes[0] + place.y * slopes[1] + place.z * slopes[2]; }
+    Value at(const glm::dvec3& place) const { return value + place.x * slopes[0] + place.y * slopes[1] + place.z * slopes[2]; }
 };
 
-// Gradients in any axes, all finite. Of a cell so flat that float32 could not hold the slopes, the mean everywhere.
-GradientMap make_gradient_map(const std::array<glm::dvec3, 4>& places, const std::array<glm::dvec3, 4>& gradients);
+// From what it is at the corners. In a cell so flat that float32 could not hold the slopes, the corners' mean everywhere.
+//
+// Gradients in any axes, all finite: up to a factor > 0 that is the same all over the cell (RKE00 §8, EKE01 §5.3).
+AffineMap<glm::dvec3> make_gradient_map(const std::array<glm::dvec3, 4>& places, const std::array<glm::dvec3, 4>& gradients);
+// Scalars in 0..1.
+AffineMap<double> make_scalar_map(const std::array<glm::dvec3, 4>& places, const std::array<double, 4>& scalars);
 
 }  // namespace cellproj

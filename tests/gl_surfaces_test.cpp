@@ -136,7 +136,8 @@ TEST_P(GlSurfacesOfEither, LieWhereTheJudgeHasThem) {
         EXPECT_LT(judge(scene, view_of_unit_cube(GetParam(), from)).largest, 2e-5);
 }
 
-// A method's own error in the medium alone is what it has here, too: segments that are cut are shorter. Issue 7 asks for 2e-3.
+// A method's own error in the medium alone is what it has here, too: segments that are cut are shorter. On top come the sides of the
+// mesh, which are where the rasterizer has their points. Issue 7 asks for 2e-3.
 TEST_P(GlSurfacesOfEither, InAMediumByEveryMethod) {
     const Camera camera = view_of_unit_cube(GetParam());
     const Scene medium = scene_of(grid_mesh(5, 0.2, 4), linear, ramp());
@@ -148,7 +149,7 @@ TEST_P(GlSurfacesOfEither, InAMediumByEveryMethod) {
                                  "preint3d:64", "preint3d:64:linear"}) {
             const Quality quality{.method = parse_method(name)};
             const double own = judge(medium, alone, camera, usual_size, quality).largest;
-            EXPECT_LT(judge(scene, truths, camera, usual_size, quality).largest, 1.1 * own + 2e-5) << name;
+            EXPECT_LT(judge(scene, truths, camera, usual_size, quality).largest, 1.1 * own + 2e-4) << name;
         }
     }
 }
@@ -447,12 +448,12 @@ TEST(GlSurfaces, GradientsAreLinearInACell) {
         const double scale = std::pow(10, 100 * any(random));
         std::array<glm::dvec3, 4> places{vector(), vector(), vector(), vector()}, gradients{vector(), vector(), vector(), vector()};
         for (glm::dvec3& g : gradients) g *= scale;
-        const GradientMap map = make_gradient_map(places, gradients);
+        const AffineMap<glm::dvec3> map = make_gradient_map(places, gradients);
         const double factor = glm::length(map.at(places[0])) / (glm::length(gradients[0] / scale) * scale);
         EXPECT_GT(factor, 0);
         for (std::size_t i = 0; i < 4; ++i) EXPECT_LT(glm::length(map.at(places[i]) - factor * gradients[i]), 1e-6);  // thin cells
         places[3] = (places[0] + places[1] + places[2]) / 3.0;
-        const GradientMap flat = make_gradient_map(places, gradients);
+        const AffineMap<glm::dvec3> flat = make_gradient_map(places, gradients);
         EXPECT_LT(glm::length(flat.at(vector()) - factor * 0.25 * (gradients[0] + gradients[1] + gradients[2] + gradients[3])), 1e-6);
     }
     EXPECT_EQ(glm::length(make_gradient_map({}, {}).at({1, 2, 3})), 0);

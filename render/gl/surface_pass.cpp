@@ -103,11 +103,9 @@ void SurfacePass::bind(const Program& program, const CellStream& cells, const Ne
     if (perspective) set("inverse_far", frame.far);
     if (perspective && has_medium_) set("inverse_near", 1.0 / cells.near_depth());
     if (!needs_order()) set("inverse_nearest", 1.0 / frame.nearest);
-    if (perspective ? lit || has_medium_ : shading_ == Shading::smooth) {
-        const glm::dvec2 center = transform.principal_point();
-        program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
-        set("pixels_per_unit", transform.pixels_per_unit());
-    }
+    const glm::dvec2 center = transform.principal_point();
+    program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
+    set("pixels_per_unit", transform.pixels_per_unit());
     list_.bind(surfaces_unit);
     if (!lit) return;
 

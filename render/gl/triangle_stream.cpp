@@ -44,10 +44,10 @@ constexpr std::array<VertexAttribute, 16> surface_attributes{{{0, 2, offsetof(Su
                                                              {9, 4, offsetof(SurfaceVertex, faces[3]) + half_face},
                                                              {10, 4, offsetof(SurfaceVertex, scalars)},
                                                              {11, 3, offsetof(SurfaceVertex, first)},
-                                                             {12, 3, offsetof(SurfaceVertex, gradient[0])},
-                                                             {13, 3, offsetof(SurfaceVertex, gradient[1])},
-                                                             {14, 3, offsetof(SurfaceVertex, gradient[2])},
-                                                             {15, 3, offsetof(SurfaceVertex, gradient[3])}}};
+                                                             {12, 4, offsetof(SurfaceVertex, maps[0])},
+                                                             {13, 4, offsetof(SurfaceVertex, maps[1])},
+                                                             {14, 4, offsetof(SurfaceVertex, maps[2])},
+                                                             {15, 4, offsetof(SurfaceVertex, maps[3])}}};
 
 }  // namespace
 

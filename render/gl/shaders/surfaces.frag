@@ -10,12 +10,8 @@ in vec3 v_ridges;
 flat in vec4 v_faces[8];
 flat in vec4 v_scalars;
 flat in vec3 v_cell;
-#ifdef LIT
-flat in vec3 v_gradient;
-#endif
-#ifdef SMOOTH
-flat in mat3 v_slopes;
-#endif
+flat in vec4 v_map;  // gradient and scalar in the cell
+flat in mat3x4 v_slopes;
 
 uniform float inverse_far;     // perspective: 1 / depth of the farthest point
 uniform vec2 principal_point;  // pixels
@@ -87,6 +83,15 @@ vec3 reflected(vec3 gradient, vec3 to_eye) {
 }
 #endif
 
+// In eye space, from the farthest point's depth on: where the field of the cell is told.
+vec3 place_at(vec2 offset, float depth) {
+#ifdef PERSPECTIVE
+    return vec3(offset * (depth + 1.0 / inverse_far), depth);
+#else
+    return vec3(offset, depth);
+#endif
+}
+
 void main() {
     float ridge = min(min(v_ridges.x, v_ridges.y), v_ridges.z);
     int other = ridge == v_ridges.x ? 1 : ridge == v_ridges.y ? 2 : 3;
@@ -113,6 +118,10 @@ void main() {
 #endif
     depth_difference = min(depth_difference, abs(v_cell.z));
     float segment = depth_difference * ray;
+    // The field at both ends, in the cell's own range beyond which slivers extrapolate. `front` and `back` tell the sides of surfaces.
+    vec4 at_front = v_map + v_slopes * place_at(offset, front_depth), at_back = v_map + v_slopes * place_at(offset, front_depth + depth_difference);
+    vec2 range = vec2(min(v_scalars.x, ends(v_scalars.y, v_scalars.z, v_scalars.w).x), max(v_scalars.x, ends(v_scalars.y, v_scalars.z, v_scalars.w).y));
+    vec2 s = clamp(vec2(at_front.w, at_back.w), range.x, range.y);
 
     int first = int(v_cell.x), last = int(v_cell.y);
     ivec2 both = ranks(vec2(front.y, back.y), first, last);
@@ -129,39 +138,32 @@ void main() {
     vec3 to_eye = -axis_forward.xyz;
 #endif
 #ifndef SMOOTH
-    vec3 share_of_color = reflected(v_gradient, to_eye);
+    vec3 share_of_color = reflected(v_map.xyz, to_eye);
 #endif
 #endif
-    float at = 0.0, s_at = front.y;  // where the last crossing was, as a share of the segment, and the scalar there
+    float at = 0.0, s_at = s.x;  // where the last crossing was, as a share of the segment, and the scalar there
     for (;;) {
         bool crossed = k != end;
         int surface = 3 * max(rising ? k : k - 1, 0);
         vec4 about = texelFetch(surfaces, surface);
-        float share = crossed ? clamp((about.y - front.y) / (back.y - front.y), at, 1.0) : 1.0;
+        float share = crossed && s.x != s.y ? clamp((about.y - s.x) / (s.y - s.x), at, 1.0) : 1.0;
 #ifdef MEDIUM
-        float s_here = crossed ? clamp(about.y, min(front.y, back.y), max(front.y, back.y)) : back.y;
+        float s_here = crossed ? clamp(about.y, min(s.x, s.y), max(s.x, s.y)) : s.y;
         light += (1.0 - light.a) * light_of_segment(s_at, s_here, (share - at) * segment + lead);
         s_at = s_here;
         lead = 0.0;
 #endif
         vec3 color = texelFetch(surfaces, surface + (rising ? 1 : 2)).rgb;
-#if defined(SMOOTH) || defined(NEAREST)
-        float depth = front_depth + share * depth_difference;  // from the farthest point's on
-#ifdef PERSPECTIVE
-        float full_depth = depth + 1.0 / inverse_far;
-#else
-        float full_depth = 1.0;
-#endif
-#endif
 #ifdef SMOOTH
-        vec3 share_of_color = reflected(v_gradient + v_slopes * vec3(offset * full_depth, depth), to_eye);
+        vec3 share_of_color = reflected(mix(at_front.xyz, at_back.xyz, share), to_eye);
 #endif
 #ifdef LIT
         color *= share_of_color;
 #endif
 #ifdef NEAREST
+        float depth = front_depth + share * depth_difference;
 #ifdef PERSPECTIVE
-        gl_FragDepth = -depth * inverse_far / full_depth * inverse_nearest;
+        gl_FragDepth = -depth * inverse_far / (depth + 1.0 / inverse_far) * inverse_nearest;
 #else
         gl_FragDepth = -depth * inverse_nearest;
 #endif

@@ -7,18 +7,14 @@ layout(location = 1) in vec3 ridges;
 layout(location = 2) in vec4 faces[8];      // two for each face, the base first: nearness, scalar term; planes and x, y of the origin
 layout(location = 10) in vec4 scalars;      // of the corners opposite to the faces
 layout(location = 11) in vec3 cell;         // first and last surface, depth range (negative: base at the back)
-layout(location = 12) in vec3 gradient[4];  // at the frame's place, and what it changes by along x, y, z
+layout(location = 12) in vec4 maps[4];      // gradient and scalar at the frame's place, what they change by along x, y, z
 
 out vec3 v_ridges;
 flat out vec4 v_faces[8];
 flat out vec4 v_scalars;
 flat out vec3 v_cell;
-#ifdef LIT
-flat out vec3 v_gradient;
-#endif
-#ifdef SMOOTH
-flat out mat3 v_slopes;
-#endif
+flat out vec4 v_map;
+flat out mat3x4 v_slopes;
 
 // What the method wants to know of a cell between two scalars.
 void prepare_cell(float low, float high);
@@ -29,11 +25,7 @@ void main() {
     v_faces = faces;
     v_scalars = scalars;
     v_cell = cell;
-#ifdef LIT
-    v_gradient = gradient[0];
-#endif
-#ifdef SMOOTH
-    v_slopes = mat3(gradient[1], gradient[2], gradient[3]);
-#endif
+    v_map = maps[0];
+    v_slopes = mat3x4(maps[1], maps[2], maps[3]);
     gl_Position = vec4(position, 0.0, 1.0);
 }
