@@ -383,7 +383,9 @@ public:
         vertex_.first = static_cast<float>(range.first);
         vertex_.last = static_cast<float>(range.last);
         vertex_.depth_range = static_cast<float>(outline_.base_is_front ? span.far - span.near : span.near - span.far);
-        const AffineMap<double> scalar = make_scalar_map(places_of(corners, 1.0, frame), scalars);
+        const auto places_before = places_of(corners, 1.0, frame);
+        if (!stream.opacity_scalars_.empty()) set_opacity(places_before, corners, frame);
+        const AffineMap<double> scalar = make_scalar_map(places_before, scalars);
         vertex_.maps[0].scalar = static_cast<float>(scalar.value);
         for (std::size_t slope = 0; slope < 3; ++slope) vertex_.maps[slope + 1].scalar = static_cast<float>(scalar.slopes[slope]);
         if (range.first == range.last) return;
@@ -438,6 +440,17 @@ private:
         std::array<glm::dvec3, 4> places;
         for (std::size_t i = 0; i < 4; ++i) places[i] = corners.vertices[i].position - glm::dvec3(0.0, 0.0, frame.far_depth());
         return places;
+    }
+
+    void set_opacity(const std::array<glm::dvec3, 4>& places, const Corners& corners, const NearnessFrame& frame) {
+        std::array<double, 4> scalars;
+        for (std::size_t c = 0; c < 4; ++c)
+            scalars[c] = frame.perspective ? corners.opacity_scalars[c] / corners.vertices[c].depth : corners.opacity_scalars[c];
+        const AffineMap<double> map = make_scalar_map(places, scalars);
+        vertex_.opacity_value = static_cast<float>(map.value);
+        vertex_.opacity_slope_x = static_cast<float>(map.slopes[0]);
+        vertex_.opacity_slope_y = static_cast<float>(map.slopes[1]);
+        vertex_.opacity_slope_z = static_cast<float>(map.slopes[2]);
     }
 
     const CellStream& stream_;

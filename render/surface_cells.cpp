@@ -46,7 +46,9 @@ SurfaceCells::SurfaceCells(const Scene& scene, const SceneUnits& units)
             for (int corner = 0; corner < 4; ++corner) {
                 const double s = scene.field->at(*scene.mesh, static_cast<CellId>(cell), corner);
                 const auto scalar = static_cast<float>(units.normalized(s));
-                finite = finite && std::isfinite(s);
+                const ScalarField* opacity = scene.opacity_field.get();
+                finite = finite && std::isfinite(s) &&
+                         (!opacity || std::isfinite(opacity->at(*scene.mesh, static_cast<CellId>(cell), corner)));
                 low = std::min(low, scalar);
                 high = std::max(high, scalar);
             }

@@ -41,11 +41,14 @@ struct SurfaceFace {
 // Interpolated: position and ridges. All else is of the triangle whose last vertex it is.
 struct SurfaceVertex {
     float x, y;             // clip space
+    float opacity_value, opacity_slope_x;  // of an opacity field, where there is one: AffineMap, also further down
     float ridges[3];        // project/silhouette.hpp; the smallest tells the face on the other side: 1 + its number
+    float opacity_slope_y;
     SurfaceFace faces[4];   // the base first
     float scalars[4];       // normalized, of the corner opposite to each face
     float first, last;      // isosurfaces that can be in the cell: first <= i < last
     float depth_range;      // largest minus smallest depth; negative when the base is the back
+    float opacity_slope_z;
     struct {
         float gradient[3], scalar;
     } maps[4];              // AffineMap of each: value, slopes

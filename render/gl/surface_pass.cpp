@@ -49,10 +49,6 @@ Texture upload(const std::vector<DirectionalLight>& lights) {
     return Texture::list(texels);
 }
 
-Error refusal(const char* option, const char* expected, const std::string& found, const char* advice) {
-    return Error({ErrorKind::option, option, expected, found, advice});
-}
-
 }  // namespace
 
 bool SurfacePass::is_needed(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
@@ -60,17 +56,15 @@ bool SurfacePass::is_needed(const Scene& scene) { return scene.surfaces && !scen
 void SurfacePass::require_drawn(const Scene& scene, const Quality& quality) {
     if (!is_needed(scene)) return;
     if (light_at_vertices(quality.method) || quality.method.blending != Blending::once)
-        throw refusal("--method", "one of light per pixel, blended once, for a scene with isosurfaces", to_string(quality.method),
-                      "use integral, exact or a table");
-    if (scene.opacity_field)
-        throw refusal("--opacity-field", "colour and opacity from one field in a scene with isosurfaces", "another field",
-                      "leave out the isosurfaces or the opacity field");
+        throw Error({ErrorKind::option, "--method", "one of light per pixel, blended once, for a scene with isosurfaces",
+                     to_string(quality.method), "use integral, exact or a table"});
 }
 
 SurfacePass::SurfacePass(const Scene& scene, const SceneUnits& units)
     : surfaces_(scene.surfaces),
       cells_(scene, units),
       opaque_(scene.surfaces->isosurfaces.opaque()),
+      two_fields_(scene.opacity_field != nullptr),
       shading_(scene.surfaces->shading),
       list_(upload(scene.surfaces->isosurfaces, cells_.thresholds(), units)),
       lights_(upload(scene.surfaces->lighting.lights)) {}
@@ -90,6 +84,7 @@ void SurfacePass::set_visible(std::span<const std::uint8_t> visible) {
 
 std::string SurfacePass::defines(bool perspective) const {
     return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (has_medium_ ? "#define MEDIUM\n" : "") +
+           (has_medium_ && two_fields_ ? "#define TWO_FIELDS\n" : "") +
            (shading_ != Shading::unlit ? "#define LIT\n" : "") +
            (shading_ == Shading::smooth ? "#define SMOOTH\n" : "") + (needs_order() ? "" : "#define NEAREST\n");
 }

@@ -24,7 +24,7 @@ class SurfacePass {
 public:
     static bool is_needed(const Scene& scene);  // it has surfaces
     // Throws Error (option) for surfaces with a method of light at the vertices or blended by halves, which know no place in a
-    // segment, or with an opacity field.
+    // segment.
     static void require_drawn(const Scene& scene, const Quality& quality);
 
     // A scene that needs it, and that `validate` passes.
@@ -46,7 +46,7 @@ public:
 private:
     std::shared_ptr<const SurfaceScene> surfaces_;
     SurfaceCells cells_;
-    bool opaque_, has_medium_ = false;
+    bool opaque_, two_fields_, has_medium_ = false;
     Shading shading_;
     Texture list_, lights_;
     std::vector<std::uint8_t> drawn_;

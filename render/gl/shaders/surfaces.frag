@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One ray segment inside a cell, cut where isosurfaces cross it (RKE00 sections 5 to 10): the medium before a crossing, then the surface.
 // No table: the surfaces are found in their sorted list, so that the work grows with those crossed.
-//   MEDIUM    there is one; the method's file, behind this one, says what light it gives
+//   MEDIUM    there is one (TWO_FIELDS: whose extinction is told by another field); the method's file, behind this one, says what light it gives
 //   LIT       surfaces are shaded by the gradient, one for the cell or
 //   SMOOTH    linear in it
 //   NEAREST   all are opaque and there is no medium: the first crossing, for the depth test
@@ -12,6 +12,12 @@ flat in vec4 v_scalars;
 flat in vec3 v_cell;
 flat in vec4 v_map;  // gradient and scalar in the cell
 flat in mat3x4 v_slopes;
+#ifdef TWO_FIELDS
+flat in vec4 v_opacity;  // the second field: value, slopes
+#define scalars vec2     // that of the colour, that of the extinction
+#else
+#define scalars float
+#endif
 
 uniform float inverse_far;     // perspective: 1 / depth of the farthest point
 uniform vec2 principal_point;  // pixels
@@ -23,9 +29,8 @@ layout(binding = 8) uniform samplerBuffer surfaces;  // three each: threshold, i
 layout(location = 0) out vec4 light;  // associated colour, opacity
 
 #ifdef MEDIUM
-#define scalars float
 // Scalars 0..1, length >= 0, all in scene units.
-vec4 light_of_segment(float s_front, float s_back, float segment);
+vec4 light_of_segment(scalars s_front, scalars s_back, float segment);
 #endif
 
 // How many surfaces each scalar is not below (render/surface_cells.hpp), known to be between both.
@@ -119,9 +124,14 @@ void main() {
     depth_difference = min(depth_difference, abs(v_cell.z));
     float segment = depth_difference * ray;
     // The field at both ends, in the cell's own range beyond which slivers extrapolate. `front` and `back` tell the sides of surfaces.
-    vec4 at_front = v_map + v_slopes * place_at(offset, front_depth), at_back = v_map + v_slopes * place_at(offset, front_depth + depth_difference);
+    vec3 place_in_front = place_at(offset, front_depth), place_behind = place_at(offset, front_depth + depth_difference);
+    vec4 at_front = v_map + v_slopes * place_in_front, at_back = v_map + v_slopes * place_behind;
     vec2 range = vec2(min(v_scalars.x, ends(v_scalars.y, v_scalars.z, v_scalars.w).x), max(v_scalars.x, ends(v_scalars.y, v_scalars.z, v_scalars.w).y));
     vec2 s = clamp(vec2(at_front.w, at_back.w), range.x, range.y);
+#ifdef TWO_FIELDS
+    vec2 s_opacity = v_opacity.xx + vec2(dot(v_opacity.yzw, place_in_front), dot(v_opacity.yzw, place_behind));
+    s_opacity = clamp(s_opacity, 0.0, 1.0);
+#endif
 
     int first = int(v_cell.x), last = int(v_cell.y);
     ivec2 both = ranks(vec2(front.y, back.y), first, last);
@@ -149,7 +159,13 @@ void main() {
         float share = crossed && s.x != s.y ? clamp((about.y - s.x) / (s.y - s.x), at, 1.0) : 1.0;
 #ifdef MEDIUM
         float s_here = crossed ? clamp(about.y, min(s.x, s.y), max(s.x, s.y)) : s.y;
-        light += (1.0 - light.a) * light_of_segment(s_at, s_here, (share - at) * segment + lead);
+        float part = (share - at) * segment + lead;
+#ifdef TWO_FIELDS
+        vec2 from = vec2(s_at, mix(s_opacity.x, s_opacity.y, at)), to = vec2(s_here, mix(s_opacity.x, s_opacity.y, share));
+        light += (1.0 - light.a) * light_of_segment(from, to, part);
+#else
+        light += (1.0 - light.a) * light_of_segment(s_at, s_here, part);
+#endif
         s_at = s_here;
         lead = 0.0;
 #endif
