@@ -113,9 +113,12 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
-    prepare_surfaces(scene, same_cells, same_transfer);
-    if (same_transfer && (shader_ || lighting_) && method_ == quality.method) return;
+    if (!same_transfer || !(shader_ || lighting_) || method_ != quality.method) prepare_light(scene, quality, same_cells);
+    prepare_surfaces(scene);
+}
 
+// The method's tables; without any where that fails, so that the next call makes them.
+void GlRenderer::prepare_light(const Scene& scene, const Quality& quality, bool same_cells) {
     const SceneUnits& units = prepared_->units();
     const ScalarSpan span{units.scalar_low, units.scalar_high};
     const ScalarSpan opacity_span = scene.opacity_field ? ScalarSpan{units.opacity_low, units.opacity_high} : span;
@@ -136,18 +139,17 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     method_ = quality.method;
 }
 
-void GlRenderer::prepare_surfaces(const Scene& scene, bool same_cells, bool same_transfer) {
+void GlRenderer::prepare_surfaces(const Scene& scene) {
     if (!SurfacePass::is_needed(scene)) {
         surfaces_.reset();
         return;
     }
-    const bool same = surfaces_ && same_cells && surfaces_->is_of(scene);
-    if (!same) {
+    if (!surfaces_ || !surfaces_->is_of(scene)) {
         surfaces_.reset();  // none of another scene behind a failure
         validate(scene);
         surfaces_ = std::make_unique<SurfacePass>(scene, prepared_->units());
     }
-    if (!same || !same_transfer) surfaces_->set_visible(prepared_->visible());
+    surfaces_->set_visible(scene.transfer, prepared_->visible());
 }
 
 const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {

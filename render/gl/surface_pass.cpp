@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -61,7 +62,7 @@ void SurfacePass::require_drawn(const Scene& scene, const Quality& quality) {
 }
 
 SurfacePass::SurfacePass(const Scene& scene, const SceneUnits& units)
-    : surfaces_(scene.surfaces),
+    : scene_(scene),
       cells_(scene, units),
       opaque_(scene.surfaces->isosurfaces.opaque()),
       two_fields_(scene.opacity_field != nullptr),
@@ -69,7 +70,14 @@ SurfacePass::SurfacePass(const Scene& scene, const SceneUnits& units)
       list_(upload(scene.surfaces->isosurfaces, cells_.thresholds(), units)),
       lights_(upload(scene.surfaces->lighting.lights)) {}
 
-void SurfacePass::set_visible(std::span<const std::uint8_t> visible) {
+bool SurfacePass::is_of(const Scene& scene) const {
+    return scene_.surfaces == scene.surfaces && scene_.mesh == scene.mesh && scene_.field == scene.field &&
+           scene_.opacity_field == scene.opacity_field;
+}
+
+void SurfacePass::set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible) {
+    if (!drawn_.empty() && scene_.transfer == transfer) return;
+    scene_.transfer = std::move(transfer);
     const std::vector<std::uint8_t>& crossed = cells_.crossed();
     has_medium_ = std::ranges::find(visible, std::uint8_t{1}) != visible.end();
     drawn_ = crossed;
@@ -104,7 +112,7 @@ void SurfacePass::bind(const Program& program, const CellStream& cells, const Ne
     list_.bind(surfaces_unit);
     if (!lit) return;
 
-    const Lighting& lighting = surfaces_->lighting;
+    const Lighting& lighting = scene_.surfaces->lighting;
     set("two_sided", lighting.two_sided ? 1.0 : 0.0);
     set("light_count", static_cast<double>(lighting.lights.size()));
     program.set("ambient", glm::vec4(lighting.ambient, lighting.exponent));

@@ -30,9 +30,10 @@ public:
     // A scene that needs it, and that `validate` passes.
     SurfacePass(const Scene& scene, const SceneUnits& units);
 
-    bool is_of(const Scene& scene) const { return surfaces_ == scene.surfaces; }
-    // Which cells are seen without surfaces (PreparedScene::visible), before anything is drawn and when it has changed.
-    void set_visible(std::span<const std::uint8_t> visible);
+    // The same surfaces, mesh and fields.
+    bool is_of(const Scene& scene) const;
+    // Which cells are seen without surfaces (PreparedScene::visible of a transfer function), before anything is drawn.
+    void set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible);
 
     const SurfaceCells& cells() const { return cells_; }
     bool has_medium() const { return has_medium_; }
@@ -44,7 +45,7 @@ public:
     void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame) const;
 
 private:
-    std::shared_ptr<const SurfaceScene> surfaces_;
+    Scene scene_;  // its transfer function: the one that `drawn_` is of
     SurfaceCells cells_;
     bool opaque_, two_fields_, has_medium_ = false;
     Shading shading_;
