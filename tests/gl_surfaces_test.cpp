@@ -28,9 +28,8 @@ namespace {
 
 using namespace testing_support;
 
-constexpr ImageSize usual_size = CELLPROJ_SANITIZED ? ImageSize{24, 24} : ImageSize{64, 64};
-
-// Rasterizers move points to a grid of 1/256 of a pixel.
+// Rasterizers move points to a grid of 1/256 of a pixel: in smaller pictures that is more of the scene.
+constexpr ImageSize usual_size{64, 64};
 constexpr double slack = 1.0 / 512;
 
 // A layer of opacity .1 too many or too few in front of white changes a pixel by 1e-1; behind 50 of them, by 5e-4.
@@ -72,6 +71,13 @@ struct Judged {
     Statistics statistics;
 };
 
+// Of all pixels; sanitizers slow the judge down: of every ninth.
+std::vector<PixelTruth> truths_of(const Scene& scene, const Camera& camera, ImageSize size) {
+    std::vector<PixelId> pixels = all_pixels(size);
+    if (CELLPROJ_SANITIZED) std::erase_if(pixels, [&](const PixelId& pixel) { return (pixel.x + size.width * pixel.y) % 9 != 4; });
+    return Reference(scene).pixels(camera, size, pixels, slack);
+}
+
 Judged judge(const Scene& scene, const std::vector<PixelTruth>& truths, const Camera& camera, ImageSize size, const Quality& quality) {
     Judged result;
     const Image image = gl().render(scene, camera, size, quality, &result.statistics);
@@ -86,7 +92,7 @@ Judged judge(const Scene& scene, const std::vector<PixelTruth>& truths, const Ca
 }
 
 Judged judge(const Scene& drawn, const Scene& truth, const Camera& camera, ImageSize size = usual_size) {
-    return judge(drawn, Reference(truth).picture(camera, size, slack), camera, size, {});
+    return judge(drawn, truths_of(truth, camera, size), camera, size, {});
 }
 
 Judged judge(const Scene& scene, const Camera& camera, ImageSize size = usual_size) { return judge(scene, scene, camera, size); }
@@ -142,10 +148,10 @@ TEST_P(GlSurfacesOfEither, LieWhereTheJudgeHasThem) {
 TEST_P(GlSurfacesOfEither, InAMediumByEveryMethod) {
     const Camera camera = view_of_unit_cube(GetParam());
     const Scene medium = scene_of(grid_mesh(5, 0.2, 4), linear, ramp());
-    const auto alone = Reference(medium).picture(camera, usual_size, slack);
+    const auto alone = truths_of(medium, camera, usual_size);
     for (const double opacity : {1.0, 0.5}) {
         const Scene scene = three_in(medium, opacity, Shading::smooth);
-        const auto truths = Reference(scene).picture(camera, usual_size, slack);
+        const auto truths = truths_of(scene, camera, usual_size);
         for (const char* name : {"integral", "exact:1e-5", "linear:8", "homogeneous", "stein", "average", "preint2d:128", "preint2d-exp:256",
                                  "preint3d:64", "preint3d:64:linear"}) {
             const Quality quality{.method = parse_method(name)};
@@ -164,7 +170,7 @@ TEST_P(GlSurfacesOfEither, InAMediumOfTwoFields) {
         other.values[100] = hole;
         scene.opacity_field = std::make_shared<ScalarField>(other);
         for (const char* name : {"integral", "linear:16"}) {
-            const auto truths = Reference(scene).picture(camera, usual_size, slack);
+            const auto truths = truths_of(scene, camera, usual_size);
             EXPECT_LT(judge(scene, truths, camera, usual_size, {.method = parse_method(name)}).largest, 1e-3) << name << hole;
         }
     }
@@ -180,22 +186,23 @@ TEST_P(GlSurfacesOfEither, InAMediumOfManyPieces) {
     }
     const Camera camera = view_of_unit_cube(GetParam());
     const Scene scene = three_in(scene_of(grid_mesh(4, 0.2, 6), linear, {OpticalModel::density, color, extinction}), 0.5, Shading::unlit);
-    const auto truths = Reference(scene).picture(camera, usual_size, slack);
+    const auto truths = truths_of(scene, camera, usual_size);
     for (const char* name : {"integral", "exact:1e-5"})
         EXPECT_LT(judge(scene, truths, camera, usual_size, {.method = parse_method(name)}).largest, 1e-3) << name;
 }
 
-// Any scalars: what the cells' faces say decides, and no linear field hides a mistake. Smooth normals within 1e-3 but in slivers.
+// Any scalars: what the cells' faces say decides, and no linear field hides a mistake. Where surfaces fold, the moved points show in
+// single pixels (OfTheBluntFin).
 TEST_P(GlSurfacesOfEither, OfNoise) {
     std::mt19937_64 random(5);
     const Scene noise = scene_of(grid_mesh(8, 0.2, 3), [&](const glm::dvec3&) { return static_cast<double>(random() % 1000) / 1000; }, nothing());
-    const Camera camera = view_of_unit_cube(GetParam());
-    EXPECT_LT(judge(with_surfaces(noise, layers(20, 0.1)), camera).largest, 5e-4);
-    EXPECT_LT(judge(with_surfaces(noise, layers(3, 1), Shading::flat), camera).largest, 5e-4);
-    EXPECT_LT(judge(with_surfaces(noise, layers(3, 1), Shading::smooth), camera).largest, 2e-3);
     Scene medium = noise;
     medium.transfer = std::make_shared<TransferFunction>(ramp());
-    EXPECT_LT(judge(with_surfaces(medium, layers(3, 0.5), Shading::smooth), camera).largest, 2e-3);
+    for (const Scene& scene : {with_surfaces(noise, layers(20, 0.1)), with_surfaces(noise, layers(3, 1), Shading::flat),
+                               with_surfaces(noise, layers(3, 1), Shading::smooth), with_surfaces(medium, layers(3, 0.5), Shading::smooth)}) {
+        const Judged judged = judge(scene, view_of_unit_cube(GetParam()));
+        EXPECT_LE(judged.wrong, judged.pixels / 500);
+    }
 }
 
 TEST(GlSurfaces, AroundACameraInside) {
@@ -218,7 +225,7 @@ TEST(GlSurfaces, OfTheFlowAroundASphere) {
                                            {-0.2, {0.2, 1, 0.1}, opacity, glm::dvec3(0.9, 0.9, 0)},
                                            {0.3, {0.2, 0.3, 1}, opacity, {}}},
                                           Shading::smooth);
-        EXPECT_LT(judge(scene, camera, CELLPROJ_SANITIZED ? ImageSize{16, 16} : ImageSize{80, 80}).largest, 2e-3) << opacity;
+        EXPECT_LT(judge(scene, camera, {80, 80}).largest, 2e-3) << opacity;
     }
 #else
     GTEST_SKIP() << "no mesher";

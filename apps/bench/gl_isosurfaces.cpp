@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Whole frames of isosurfaces in OpenGL, 512², perspective, a new view each time: cellproj_bench --benchmark_filter=GlIso
-// Where the set of counters says `fin`, the mesh is the blunt fin (187,395 cells, its density); else a jittered grid.
+// GlIsoSameCells: the blunt fin (187,395 cells, its density); the others: a jittered grid.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -106,9 +106,12 @@ void SurfacePass::bind(const Program& program, const CellStream& cells, const Ne
     if (perspective) set("inverse_far", frame.far);
     if (perspective && has_medium_) set("inverse_near", 1.0 / cells.near_depth());
     if (!needs_order()) set("inverse_nearest", 1.0 / frame.nearest);
-    const glm::dvec2 center = transform.principal_point();
-    program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
-    set("pixels_per_unit", transform.pixels_per_unit());
+    // Of translucent surfaces alone, unlit or lit by one normal for all of a cell, no place is asked for but that of the eye.
+    if (has_medium_ || !needs_order() || shading_ == Shading::smooth || (perspective && lit)) {
+        const glm::dvec2 center = transform.principal_point();
+        program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
+        set("pixels_per_unit", transform.pixels_per_unit());
+    }
     list_.bind(surfaces_unit);
     if (!lit) return;
 
