@@ -93,7 +93,8 @@ LitCorner mix(const LitCorner& a, const LitCorner& b, double t) {
 }  // namespace
 
 CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size, std::span<const std::uint8_t> drawn)
-    : prepared_(prepared), drawn_(drawn.empty() ? std::span<const std::uint8_t>(prepared.visible()) : drawn), eye_(camera.eye), transform_(relative_transform(camera, size, prepared.units().length)),
+    : prepared_(prepared), drawn_(drawn.empty() ? std::span<const std::uint8_t>(prepared.visible()) : drawn), eye_(camera.eye),
+      transform_(relative_transform(camera, size, prepared.units().length)),
       near_depth_(near_plane_depth(camera, prepared.units().length)) {
     const glm::dvec2 picture(size.width, size.height);
     guard_ = {-guard_pictures * picture, (1 + guard_pictures) * picture};
@@ -423,7 +424,8 @@ public:
 
 private:
     // In eye space, from the frame's farthest point on. `back` 0: where the rasterizer has the corners, for what is mixed by weights
-    // (in a sliver, a place beside it has other ones); 1: where they were, for what is to stay there.
+    // (in a sliver, a place beside it has other ones); 1: where they were, for what is to stay there. Those of a piece serve for what is
+    // linear in its cell.
     std::array<glm::dvec3, 4> places_of(const Corners& corners, double back, const NearnessFrame& frame) const {
         const ScreenTransform& transform = stream_.transform_;
         std::array<glm::dvec3, 4> places;
