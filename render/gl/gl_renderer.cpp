@@ -109,7 +109,9 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
-        prepared_.emplace(scene);
+        Scene medium = scene;  // surfaces are prepared apart: others of them leave the rest as it is
+        medium.surfaces = nullptr;
+        prepared_.emplace(std::move(medium));
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
