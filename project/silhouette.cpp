@@ -94,43 +94,54 @@ private:
     const glm::dvec2& origin_;
 };
 
-// The corner that a triangle of the silhouette leaves out: that of its base, as a face.
-std::size_t opposite(const std::array<std::uint8_t, 3>& triangle) { return 6U - triangle[0] - triangle[1] - triangle[2]; }
+Silhouette outline_of(const ProjectedTet& tet, const std::array<ScreenVertex, 4>& corners) {
+    Silhouette silhouette;
+    if (tet.kind == ProjectionClass::nothing) return silhouette;
+    set_triangles(silhouette, tet);
+    silhouette.base_is_front = tet.base_is_front;
+    const double thickness = tet.vertices[static_cast<std::size_t>(tet.thick)].thickness;
+    const double height = thickness > 0.0 ? thickness : 1.0;
+    // A ridge that there is not is never the smallest, not by rounding either.
+    for (std::size_t c = 0; c < 4; ++c) silhouette.vertices[c] = {corners[c].position, glm::dvec3(2.0 * height)};
+    for (std::uint8_t c = 0; c < 4; ++c) {
+        if (tet.base_weights[c] < smallest_weight) continue;
+        const auto ridge = static_cast<int>(silhouette.ridge_count);
+        silhouette.ridge_corners[silhouette.ridge_count++] = c;
+        for (SilhouetteVertex& v : silhouette.vertices) v.ridges[ridge] = 0.0;
+        silhouette.vertices[c].ridges[ridge] = height / tet.base_weights[c];
+    }
+    return silhouette;
+}
 
 }  // namespace
 
+Silhouette make_outline(const std::array<ScreenVertex, 4>& corners, bool perspective) {
+    return outline_of(project_tet(corners, perspective), corners);
+}
+
 Silhouette make_silhouette(const std::array<ScreenVertex, 4>& corners, const std::array<glm::dvec2, 4>& moved,
                            const glm::dvec2& origin, bool perspective) {
-    Silhouette silhouette;
     const ProjectedTet tet = project_tet(corners, perspective);
     const ProjectedVertex& thick = tet.vertices[static_cast<std::size_t>(tet.thick)];
-    if (tet.kind == ProjectionClass::nothing || thick.thickness == 0.0) return silhouette;
-    set_triangles(silhouette, tet);
+    if (tet.kind == ProjectionClass::nothing || thick.thickness == 0.0) return {};
+    Silhouette silhouette = outline_of(tet, corners);
     silhouette.origin = origin;
-    silhouette.base_is_front = tet.base_is_front;
-    // A ridge that there is not is never the smallest, not by rounding either.
-    for (std::size_t c = 0; c < 4; ++c) silhouette.vertices[c] = {corners[c].position, glm::dvec3(2.0 * thick.thickness)};
 
     const MovedCell cell(corners, moved, origin);
     for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {
-        const auto base = cell.terms(opposite(silhouette.triangles[t]));
+        const auto base = cell.terms(base_corner(silhouette.triangles[t]));
         silhouette.terms[t] = {base.depth, base.scalar, {}};
     }
     // Thickness counts from the base: away from the eye, where z grows and 1/z falls, or towards it.
     const double sign = tet.base_is_front == perspective ? -1.0 : 1.0;
-    int ridge = 0;
-    for (std::size_t c = 0; c < 4; ++c) {
-        if (tet.base_weights[c] < smallest_weight) continue;
-        for (SilhouetteVertex& v : silhouette.vertices) v.ridges[ridge] = 0.0;
-        silhouette.vertices[c].ridges[ridge] = thick.thickness / tet.base_weights[c];
+    for (std::size_t ridge = 0; ridge < silhouette.ridge_count; ++ridge) {
         // The ridge vanishes where the face opposite to the corner meets the base.
-        const ScreenPlane other = cell.terms(c).depth;
+        const ScreenPlane other = cell.terms(silhouette.ridge_corners[ridge]).depth;
         for (std::size_t t = 0; t < silhouette.triangle_count; ++t) {
             SilhouetteTerms& terms = silhouette.terms[t];
-            terms.thickness[static_cast<std::size_t>(ridge)] = {sign * (other.value - terms.base_depth.value),
-                                                                sign * (other.gradient - terms.base_depth.gradient)};
+            terms.thickness[ridge] = {sign * (other.value - terms.base_depth.value),
+                                      sign * (other.gradient - terms.base_depth.gradient)};
         }
-        ++ridge;
     }
 
     const double slope = sign * cell.scalar_slope();

@@ -52,6 +52,8 @@ struct Silhouette {
     std::size_t triangle_count = 0;                          // 0, 1 or 2
     std::array<SilhouetteVertex, 4> vertices{};              // the corners
     std::array<std::array<std::uint8_t, 3>, 2> triangles{};  // corners; the last one is in no other triangle
+    std::array<std::uint8_t, 3> ridge_corners{};             // where a ridge is the smallest, the face opposite to its corner is there
+    std::size_t ridge_count = 0;                             // 1 .. 3
     std::array<SilhouetteTerms, 2> terms{};                  // of the triangles
     glm::dvec2 origin{0.0, 0.0};                             // pixels
     bool base_is_front = true;
@@ -71,5 +73,14 @@ struct Silhouette {
 // No triangles for a cell that is edge-on or flat after its corners were moved: it holds no piece of any ray.
 Silhouette make_silhouette(const std::array<ScreenVertex, 4>& corners, const std::array<glm::dvec2, 4>& moved,
                            const glm::dvec2& origin, bool perspective);
+
+// The same without terms and slope, for what is drawn from the faces themselves. Cells that are flat but not edge-on have their
+// triangles here: between their faces lies a place, though no length. Of those the ridges are relative.
+Silhouette make_outline(const std::array<ScreenVertex, 4>& corners, bool perspective);
+
+// The corner that a triangle of the silhouette leaves out: that opposite to its base.
+inline std::uint8_t base_corner(const std::array<std::uint8_t, 3>& triangle) {
+    return static_cast<std::uint8_t>(6 - triangle[0] - triangle[1] - triangle[2]);
+}
 
 }  // namespace cellproj

@@ -92,8 +92,9 @@ LitCorner mix(const LitCorner& a, const LitCorner& b, double t) {
 
 }  // namespace
 
-CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size)
-    : prepared_(prepared), eye_(camera.eye), transform_(relative_transform(camera, size, prepared.units().length)),
+CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size, std::span<const std::uint8_t> drawn)
+    : prepared_(prepared), drawn_(drawn.empty() ? std::span<const std::uint8_t>(prepared.visible()) : drawn), eye_(camera.eye),
+      transform_(relative_transform(camera, size, prepared.units().length)),
       near_depth_(near_plane_depth(camera, prepared.units().length)) {
     const glm::dvec2 picture(size.width, size.height);
     guard_ = {-guard_pictures * picture, (1 + guard_pictures) * picture};
@@ -122,40 +123,64 @@ CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, Imag
     });
 }
 
-// Calls draw(corners) for every visible cell or, where it is split or cut by the near plane, for its pieces; it says whether
-// anything was drawn.
+// Calls draw(cell, corners) for every cell to draw or, where it is split or cut by the near plane, for its pieces; it says
+// whether anything was drawn.
 template <class Vertex, class Draw>
 void CellStream::for_each_piece(const ViewOrder& order, Triangles<Vertex>& batch, Draw draw) const {
-    const auto& visible = prepared_.visible();
-    const auto cells = static_cast<std::uint32_t>(visible.size());
-    const auto draw_clipped = [&](const EyeCorners& corners) {
+    const auto cells = static_cast<std::uint32_t>(drawn_.size());
+    const auto draw_clipped = [&](CellId cell, const EyeCorners& corners) {
         const Pieces pieces = clipped(corners);
         bool drawn = false;
-        for (std::size_t piece = 0; piece < pieces.count; ++piece) drawn |= draw(pieces.corners[piece]);
+        for (std::size_t piece = 0; piece < pieces.count; ++piece) drawn |= draw(cell, pieces.corners[piece]);
         return drawn;
     };
     for (const std::uint32_t item : order.items) {
         if (item >= cells) {
             const CellPiece& piece = order.pieces[item - cells];
-            if (visible[piece.cell] && draw_clipped(eye_corners(piece))) batch.drawn_split_cells.push_back(piece.cell);
+            if (drawn_[piece.cell] && draw_clipped(piece.cell, eye_corners(piece))) batch.drawn_split_cells.push_back(piece.cell);
             continue;
         }
-        if (!visible[item]) continue;
+        if (!drawn_[item]) continue;
         Corners corners;
-        if (load(item, corners) ? draw(corners) : draw_clipped(eye_corners(item))) ++batch.drawn_cells;
+        if (load(item, corners) ? draw(item, corners) : draw_clipped(item, eye_corners(item))) ++batch.drawn_cells;
     }
 }
 
 void CellStream::project(const ViewOrder& order, TriangleBatch& batch) const {
-    for_each_piece(order, batch, [&](const Corners& corners) { return project_corners(corners, batch); });
+    for_each_piece(order, batch, [&](CellId, const Corners& corners) { return project_corners(corners, batch); });
 }
 
 void CellStream::project(const ViewOrder& order, TwoFieldBatch& batch) const {
-    for_each_piece(order, batch, [&](const Corners& corners) { return project_corners(corners, batch); });
+    for_each_piece(order, batch, [&](CellId, const Corners& corners) { return project_corners(corners, batch); });
 }
 
 void CellStream::project(const ViewOrder& order, const VertexLighting& lighting, LitBatch& batch) const {
-    for_each_piece(order, batch, [&](const Corners& corners) { return light_corners(corners, lighting, batch); });
+    for_each_piece(order, batch, [&](CellId, const Corners& corners) { return light_corners(corners, lighting, batch); });
+}
+
+void CellStream::project(const ViewOrder& order, const SurfaceCells& surfaces, const NearnessFrame& frame,
+                         SurfaceBatch& batch) const {
+    for_each_piece(order, batch, [&](CellId cell, const Corners& corners) {
+        return project_surfaces(cell, corners, surfaces, frame, batch);
+    });
+}
+
+NearnessFrame CellStream::nearness_frame() const {
+    double far = 0.0, near = 0.0;
+    bool first = true;
+    for (const ScreenPoint& p : points_) {
+        if (transform_.perspective() && p.depth == 0.0) continue;
+        const bool farther = transform_.perspective() == (p.depth < far);
+        if (first || farther) far = p.depth;
+        if (first || transform_.perspective() == (p.depth > near)) near = p.depth;
+        first = false;
+    }
+    if (transform_.perspective()) {
+        const double plane = 1.0 / near_depth_;  // where cells are cut
+        if (first) far = plane;
+        return {true, far, std::max(plane - far, 1e-30)};
+    }
+    return {false, far, std::max(far - near, 1e-30)};
 }
 
 CellStream::ScreenPoint CellStream::on_screen(const glm::dvec3& p) const {
@@ -191,6 +216,7 @@ bool CellStream::load(CellId cell, Corners& corners) const {
         if (transform_.perspective() && p.depth == 0.0) return false;
         set_corner(corners, i, p, scalar, opacity_scalar(cell, tet[i]));
     }
+    corners.whole = true;
     return true;
 }
 
@@ -301,6 +327,11 @@ bool CellStream::project_corners(const Corners& corners, Triangles<Vertex>& batc
     const Rectangle box = bounding_box(corners.vertices);
     if (!covers_pixel(box)) return false;
     VertexMaker<Vertex> make(*this, corners, origin_for(box));
+    return append_silhouette(make, box, batch);
+}
+
+template <class Maker, class Vertex>
+bool CellStream::append_silhouette(Maker& make, const Rectangle& box, Triangles<Vertex>& batch) const {
     const Silhouette& silhouette = make.silhouette();
     if (silhouette.triangle_count == 0) return false;
 
@@ -327,6 +358,116 @@ bool CellStream::project_corners(const Corners& corners, Triangles<Vertex>& batc
                [&](const SilhouetteVertex& v) { return make.at(v); });
     }
     return true;
+}
+
+// As VertexMaker, for the vertices of isosurfaces.
+class CellStream::SurfaceMaker {
+public:
+    SurfaceMaker(const CellStream& stream, CellId cell, const Corners& corners, const SurfaceCells& surfaces,
+                 const NearnessFrame& frame)
+        : stream_(stream), outline_(make_outline(corners.vertices, stream.transform_.perspective())) {
+        if (outline_.triangle_count == 0) return;
+        std::array<double, 4> scalars;
+        for (std::size_t c = 0; c < 4; ++c) {
+            std::array<FaceCorner, 3> face;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const ScreenVertex& v = corners.vertices[static_cast<std::size_t>(face_corners[c][i])];
+                face[i] = {v.position, frame.nearness(v.depth), v.scalar};
+            }
+            faces_[c] = make_surface_face(face, stream.transform_.size());
+            const ScreenVertex& v = corners.vertices[c];
+            scalars[c] = frame.perspective ? v.scalar / v.depth : v.scalar;
+            scalars_[c] = static_cast<float>(scalars[c]);
+        }
+        const CellSpan span = stream.span_of(corners.vertices);
+        const SurfaceCells::Range range = surfaces.between(std::ranges::min(scalars_), std::ranges::max(scalars_));
+        vertex_.first = static_cast<float>(range.first);
+        vertex_.last = static_cast<float>(range.last);
+        vertex_.depth_range = static_cast<float>(outline_.base_is_front ? span.far - span.near : span.near - span.far);
+        const auto places_before = places_of(corners, 1.0, frame);
+        if (!stream.opacity_scalars_.empty()) set_opacity(places_before, corners, frame);
+        const AffineMap<double> scalar = make_scalar_map(places_before, scalars);
+        vertex_.maps[0].scalar = static_cast<float>(scalar.value);
+        for (std::size_t slope = 0; slope < 3; ++slope) vertex_.maps[slope + 1].scalar = static_cast<float>(scalar.slopes[slope]);
+        if (range.first == range.last) return;
+        // Of a piece of a cell, the cell's corners may lie where nothing is on the screen.
+        const auto places = corners.whole ? places_of(corners, 0.0, frame) : places_of(cell, frame);
+        const AffineMap<glm::dvec3> gradient = make_gradient_map(places, surfaces.gradients(cell));
+        for (int axis = 0; axis < 3; ++axis) {
+            vertex_.maps[0].gradient[axis] = static_cast<float>(gradient.value[axis]);
+            for (std::size_t slope = 0; slope < 3; ++slope)
+                vertex_.maps[slope + 1].gradient[axis] = static_cast<float>(gradient.slopes[slope][axis]);
+        }
+    }
+
+    const Silhouette& silhouette() const { return outline_; }
+
+    void begin_triangle(std::size_t triangle) {
+        const std::size_t base = base_corner(outline_.triangles[triangle]);
+        std::array<bool, 4> told{};
+        std::size_t count = 0;
+        const auto tell = [&](std::size_t corner) {
+            if (told[corner]) return;
+            told[corner] = true;
+            vertex_.faces[count] = faces_[corner];
+            vertex_.scalars[count++] = scalars_[corner];
+        };
+        tell(base);
+        for (std::size_t ridge = 0; ridge < outline_.ridge_count; ++ridge) tell(outline_.ridge_corners[ridge]);
+        for (std::size_t corner = 0; corner < 4; ++corner) tell(corner);  // through which no ray goes
+    }
+
+    SurfaceVertex at(const SilhouetteVertex& v) {
+        stream_.set_place(v, vertex_);
+        return vertex_;
+    }
+
+private:
+    // In eye space, from the frame's farthest point on. `back` 0: where the rasterizer has the corners, for what is mixed by weights
+    // (in a sliver, a place beside it has other ones); 1: where they were, for what is to stay there. Those of a piece serve for what is
+    // linear in its cell.
+    std::array<glm::dvec3, 4> places_of(const Corners& corners, double back, const NearnessFrame& frame) const {
+        const ScreenTransform& transform = stream_.transform_;
+        std::array<glm::dvec3, 4> places;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const ScreenVertex& v = corners.vertices[i];
+            const double depth = frame.perspective ? 1.0 / v.depth : v.depth;
+            const glm::dvec2 across = (v.position - back * corners.moved[i] - transform.principal_point()) / transform.pixels_per_unit();
+            places[i] = {across * (frame.perspective ? depth : 1.0), depth - frame.far_depth()};
+        }
+        return places;
+    }
+    std::array<glm::dvec3, 4> places_of(CellId cell, const NearnessFrame& frame) const {
+        const EyeCorners corners = stream_.eye_corners(cell);
+        std::array<glm::dvec3, 4> places;
+        for (std::size_t i = 0; i < 4; ++i) places[i] = corners.vertices[i].position - glm::dvec3(0.0, 0.0, frame.far_depth());
+        return places;
+    }
+
+    void set_opacity(const std::array<glm::dvec3, 4>& places, const Corners& corners, const NearnessFrame& frame) {
+        std::array<double, 4> scalars;
+        for (std::size_t c = 0; c < 4; ++c)
+            scalars[c] = frame.perspective ? corners.opacity_scalars[c] / corners.vertices[c].depth : corners.opacity_scalars[c];
+        const AffineMap<double> map = make_scalar_map(places, scalars);
+        vertex_.opacity_value = static_cast<float>(map.value);
+        vertex_.opacity_slope_x = static_cast<float>(map.slopes[0]);
+        vertex_.opacity_slope_y = static_cast<float>(map.slopes[1]);
+        vertex_.opacity_slope_z = static_cast<float>(map.slopes[2]);
+    }
+
+    const CellStream& stream_;
+    Silhouette outline_;
+    std::array<SurfaceFace, 4> faces_;  // opposite to each corner
+    std::array<float, 4> scalars_{};
+    SurfaceVertex vertex_{};
+};
+
+bool CellStream::project_surfaces(CellId cell, const Corners& corners, const SurfaceCells& surfaces, const NearnessFrame& frame,
+                                  SurfaceBatch& batch) const {
+    const Rectangle box = bounding_box(corners.vertices);
+    if (!covers_pixel(box)) return false;
+    SurfaceMaker make(*this, cell, corners, surfaces, frame);
+    return append_silhouette(make, box, batch);
 }
 
 bool CellStream::light_corners(const Corners& corners, const VertexLighting& lighting, LitBatch& batch) const {
@@ -390,9 +531,7 @@ glm::vec2 CellStream::clip_space(const glm::dvec2& position) const {
     return {2 * position.x / size.width - 1, 2 * position.y / size.height - 1};
 }
 
-// The part of a vertex that is equal for a whole cell.
-void CellStream::set_cell_constants(const std::array<ScreenVertex, 4>& corners, const Silhouette& silhouette,
-                                    StreamVertex& constants) const {
+CellStream::CellSpan CellStream::span_of(const std::array<ScreenVertex, 4>& corners) const {
     const bool perspective = transform_.perspective();
     const auto depth = [&](const ScreenVertex& v) { return perspective ? 1.0 / v.depth : v.depth; };
     const auto scalar = [&](const ScreenVertex& v) { return perspective ? v.scalar / v.depth : v.scalar; };
@@ -405,6 +544,13 @@ void CellStream::set_cell_constants(const std::array<ScreenVertex, 4>& corners, 
     }
     // A ray that enters at the near plane counts from the eye on.
     if (perspective && near <= near_depth_ * 1.0001) near = 0.0;
+    return {near, far, low, high};
+}
+
+// The part of a vertex that is equal for a whole cell.
+void CellStream::set_cell_constants(const std::array<ScreenVertex, 4>& corners, const Silhouette& silhouette,
+                                    StreamVertex& constants) const {
+    const auto [near, far, low, high] = span_of(corners);
     // The slope of a nearly flat cell must stay finite: infinity times no thickness is not a number.
     constants.scalar_slope = static_cast<float>(std::clamp(silhouette.scalar_slope, -1e30, 1e30));
     constants.scalar_low = static_cast<float>(low);
@@ -413,12 +559,10 @@ void CellStream::set_cell_constants(const std::array<ScreenVertex, 4>& corners, 
 }
 
 // The pixel of the picture nearest to the middle of the box.
-glm::dvec2 CellStream::origin_for(const Rectangle& box) const {
-    const glm::dvec2 picture(transform_.size().width, transform_.size().height);
-    return glm::clamp(glm::floor(0.5 * (box.low + box.high)), glm::dvec2(0.0), picture - 1.0) + 0.5;
-}
+glm::dvec2 CellStream::origin_for(const Rectangle& box) const { return nearest_pixel(0.5 * (box.low + box.high), transform_.size()); }
 
-void CellStream::set_place(const SilhouetteVertex& v, StreamVertex& vertex) const {
+template <class Vertex>
+void CellStream::set_place(const SilhouetteVertex& v, Vertex& vertex) const {
     const glm::vec2 position = clip_space(v.position);
     vertex.x = position.x;
     vertex.y = position.y;

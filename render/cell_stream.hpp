@@ -14,6 +14,8 @@
 #include "project/clip.hpp"
 #include "project/silhouette.hpp"
 #include "render/prepared_scene.hpp"
+#include "render/surface_cells.hpp"
+#include "render/surface_vertex.hpp"
 
 namespace cellproj {
 
@@ -64,11 +66,13 @@ struct Triangles {
 using TriangleBatch = Triangles<StreamVertex>;
 using TwoFieldBatch = Triangles<TwoFieldVertex>;
 using LitBatch = Triangles<LitVertex>;
+using SurfaceBatch = Triangles<SurfaceVertex>;
 
 // The mesh as one camera sees it. Every point is transformed once.
 class CellStream {
 public:
-    CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size);
+    // `drawn`: #T, 0 for cells to leave out, must outlive this; empty: those that `prepared` says are visible.
+    CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size, std::span<const std::uint8_t> drawn = {});
 
     // Appends the triangles of cells and pieces of cells, in their order. Those that cannot be seen, lie outside the view, or fall
     // between pixel centres add nothing.
@@ -77,7 +81,11 @@ public:
     void project(const ViewOrder& order, TwoFieldBatch& batch) const;
     // The same as the classical split, with light at its vertices.
     void project(const ViewOrder& order, const VertexLighting& lighting, LitBatch& batch) const;
+    // The same with what cuts segments at isosurfaces; `frame` is nearness_frame().
+    void project(const ViewOrder& order, const SurfaceCells& surfaces, const NearnessFrame& frame, SurfaceBatch& batch) const;
 
+    // From all points before the near plane.
+    NearnessFrame nearness_frame() const;
     const ScreenTransform& transform() const { return transform_; }
     // Perspective: depth of the near plane [SceneUnits::length], a thousandth of the distance to what the camera looks at or of
     // the mesh. Cells are cut there, and what a ray meets before it is drawn as if it were the cell at the plane. A nearer plane would cost
@@ -89,6 +97,7 @@ private:
         std::array<ScreenVertex, 4> vertices;  // on the rasterizer's grid
         std::array<glm::dvec2, 4> moved;       // how far to get there [pixels]
         std::array<double, 4> opacity_scalars; // scalar terms of the opacity field, where there is one
+        bool whole = false;                    // those of a cell, in its order, not of a piece of it
 
         std::array<ScreenVertex, 4> with_opacity_scalars() const;
     };
@@ -122,15 +131,27 @@ private:
     class VertexMaker;
     template <class Vertex>
     bool project_corners(const Corners& corners, Triangles<Vertex>& batch) const;
+    class SurfaceMaker;
+    bool project_surfaces(CellId cell, const Corners& corners, const SurfaceCells& surfaces, const NearnessFrame& frame,
+                          SurfaceBatch& batch) const;
+    template <class Maker, class Vertex>
+    bool append_silhouette(Maker& make, const Rectangle& box, Triangles<Vertex>& batch) const;
+    // Of a cell, in lengths and normalized scalars.
+    struct CellSpan {
+        double near, far, low, high;
+    };
+    CellSpan span_of(const std::array<ScreenVertex, 4>& corners) const;
     bool light_corners(const Corners& corners, const VertexLighting& lighting, LitBatch& batch) const;
     VertexLight light_at(const ProjectedVertex& thick, const VertexLighting& lighting) const;
     bool covers_pixel(const Rectangle& box) const;
     glm::vec2 clip_space(const glm::dvec2& position) const;
     void set_cell_constants(const std::array<ScreenVertex, 4>& corners, const Silhouette& silhouette, StreamVertex& constants) const;
     glm::dvec2 origin_for(const Rectangle& box) const;
-    void set_place(const SilhouetteVertex& v, StreamVertex& vertex) const;
+    template <class Vertex>
+    void set_place(const SilhouetteVertex& v, Vertex& vertex) const;
 
     const PreparedScene& prepared_;
+    std::span<const std::uint8_t> drawn_;
     glm::dvec3 eye_;
     ScreenTransform transform_;         // in the units of the scene, about the eye
     double near_depth_;

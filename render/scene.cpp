@@ -40,11 +40,4 @@ void validate(const Scene& scene) {
     validate(scene.surfaces->lighting, "lights");
 }
 
-void refuse_surfaces(const Scene& scene, const std::string& backend) {
-    if (!has_surfaces(scene)) return;
-    throw Error({ErrorKind::option, backend, "a scene without isosurfaces",
-                 std::to_string(scene.surfaces->isosurfaces.surfaces().size()) + " of them",
-                 "use the CPU backend (--backend cpu), which draws them"});
-}
-
 }  // namespace cellproj

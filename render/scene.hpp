@@ -36,7 +36,4 @@ void validate(const Scene& scene);
 
 bool has_surfaces(const Scene& scene);
 
-// For renderers that draw no isosurfaces: throws Error (option), naming the backend, when the scene has some.
-void refuse_surfaces(const Scene& scene, const std::string& backend);
-
 }  // namespace cellproj

@@ -452,14 +452,5 @@ TEST(RaySurfaces, AreRefusedWhereTheyCannotBe) {
     EXPECT_NO_THROW(Reference(with(scene_of(mesh, on_cells, nothing()), surfaces({}))));
 }
 
-TEST(RaySurfaces, AreRefusedByRenderersThatDoNotDrawThem) {
-    const Scene scene = scene_of(grid_mesh(2), linear, ramp());
-    const Camera camera = view_of_unit_cube(Camera::Projection::parallel);
-    const auto renderer = make_renderer(Backend::gl_osmesa);
-    EXPECT_EQ(kind_of([&] { renderer->prepare(with(scene, surfaces({{0.5}}))); }), ErrorKind::option);
-    EXPECT_EQ(kind_of([&] { renderer->render(with(scene, surfaces({{0.5}})), camera, {8, 8}); }), ErrorKind::option);
-    EXPECT_NO_THROW(renderer->render(with(scene, surfaces({})), camera, {8, 8}));
-}
-
 }  // namespace
 }  // namespace cellproj

@@ -10,6 +10,7 @@
 
 #include "classify/segment_method.hpp"
 #include "render/gl/shaders.hpp"
+#include "render/order_check.hpp"
 
 namespace cellproj::gl {
 
@@ -26,6 +27,13 @@ constexpr double longest_segment = 2.0;
 OsmesaContext current(OsmesaContext context) {
     context.make_current();
     return context;
+}
+
+// The nearest surface alone: what is nearer has a larger depth (shaders/surfaces.frag), and nothing has 0.
+void set_depth_test() {
+    glDisable(GL_BLEND);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
 }
 
 void set_blending() {
@@ -86,7 +94,8 @@ GlRenderer::GlRenderer(OsmesaContext context)
     : context_(current(std::move(context))),
       segments_(make_triangle_stream<StreamVertex>()),
       two_field_segments_(make_triangle_stream<TwoFieldVertex>()),
-      lit_(make_triangle_stream<LitVertex>()) {}
+      lit_(make_triangle_stream<LitVertex>()),
+      surface_segments_(make_triangle_stream<SurfaceVertex>()) {}
 
 // The OpenGL objects below are deleted in their own context, whatever is current now.
 GlRenderer::~GlRenderer() { context_.make_current(); }
@@ -94,18 +103,24 @@ GlRenderer::~GlRenderer() { context_.make_current(); }
 // Brings what depends on the scene and the quality up to date; usually there is nothing to do.
 void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     require_drawn(Backend::gl_osmesa, quality, fields_read(scene));
-    refuse_surfaces(scene, "gl_osmesa");
+    SurfacePass::require_drawn(scene, quality);
     context_.make_current();
     const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field &&
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
-        prepared_.emplace(scene);
+        Scene medium = scene;  // surfaces are prepared apart: others of them leave the rest as it is
+        medium.surfaces = nullptr;
+        prepared_.emplace(std::move(medium));
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
-    if (same_transfer && (shader_ || lighting_) && method_ == quality.method) return;
+    if (!same_transfer || !(shader_ || lighting_) || method_ != quality.method) prepare_light(scene, quality, same_cells);
+    prepare_surfaces(scene);
+}
 
+// The method's tables; without any where that fails, so that the next call makes them.
+void GlRenderer::prepare_light(const Scene& scene, const Quality& quality, bool same_cells) {
     const SceneUnits& units = prepared_->units();
     const ScalarSpan span{units.scalar_low, units.scalar_high};
     const ScalarSpan opacity_span = scene.opacity_field ? ScalarSpan{units.opacity_low, units.opacity_high} : span;
@@ -126,6 +141,19 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     method_ = quality.method;
 }
 
+void GlRenderer::prepare_surfaces(const Scene& scene) {
+    if (!SurfacePass::is_needed(scene)) {
+        surfaces_.reset();
+        return;
+    }
+    if (!surfaces_ || !surfaces_->is_of(scene)) {
+        surfaces_.reset();  // none of another scene behind a failure
+        validate(scene);
+        surfaces_ = std::make_unique<SurfacePass>(scene, prepared_->units());
+    }
+    surfaces_->set_visible(scene.transfer, prepared_->visible());
+}
+
 const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
     const std::string key = defines + vertex + fragment;
     const auto known = programs_.find(key);
@@ -140,20 +168,25 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     validate(camera, "camera");
     validate(size, "size");
     prepare(scene, quality);
-    if (!target_.is(size, quality.target)) target_ = Target(size, quality.target);
+    const bool sorted = needs_order();
+    if (!target_.is(size, quality.target, !sorted)) target_ = Target(size, quality.target, !sorted);
     statistics.ms.plan = total.ms();
 
     const Stopwatch sort;
     OrderReport order_report;
-    const ViewOrder order = prepared_->order(camera, size, quality.order, &order_report);
+    const ViewOrder order = find_order(camera, size, quality, order_report);
     statistics.ms.sort = sort.ms();
 
     const Stopwatch transform;
-    const CellStream cells(*prepared_, camera, size);
+    const CellStream cells(*prepared_, camera, size, surfaces_ ? surfaces_->drawn() : std::span<const std::uint8_t>{});
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
-    set_blending();
-    lighting_ ? draw_lit(cells, order, statistics) : draw_segments(cells, order, statistics);
+    sorted ? set_blending() : set_depth_test();
+    if (surfaces_) {
+        draw_surfaces(cells, order, statistics);
+    } else {
+        lighting_ ? draw_lit(cells, order, statistics) : draw_segments(cells, order, statistics);
+    }
 
     const Stopwatch read_back;
     Image image = target_.read();
@@ -170,17 +203,29 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
     if (out) {  // the proof of the order is no part of the frame
-        prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
+        if (sorted) {
+            prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
+        } else {
+            statistics.order = "none";  // needed, that is
+            statistics.order_exact = true;
+        }
         *out = std::move(statistics);
     }
     return image;
+}
+
+ViewOrder GlRenderer::find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report) {
+    if (!surfaces_) return prepared_->order(camera, size, quality.order, &report);
+    if (!surfaces_->needs_order()) return surfaces_->any_order();
+    const PixelGrid pixels = pixel_grid(camera, size);
+    return prepared_->sorter().order(camera.viewpoint(), &report, quality.order, &pixels, surfaces_->drawn());
 }
 
 void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
     const bool perspective = cells.transform().perspective();
     const bool two_fields = fields_read(prepared_->scene()) == FieldsRead::two;
     const Program& segments =
-        program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shader_->source(),
+        program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shaders::light_glsl + shader_->source(),
                 std::string(perspective ? "#define PERSPECTIVE\n" : "") + (two_fields ? "#define TWO_FIELDS\n" : "") +
                     blending_define(method_));
     if (perspective) set_camera(segments, cells);
@@ -193,6 +238,20 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
     }
     draw<StreamVertex>(segments_, order, statistics,
                        [&](const ViewOrder& chunk, TriangleBatch& batch) { cells.project(chunk, batch); });
+}
+
+void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
+    const NearnessFrame frame = cells.nearness_frame();
+    const bool medium = surfaces_->has_medium();
+    const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
+                                      shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
+                                      surfaces_->defines(frame.perspective));
+    surfaces_->bind(surfaces, cells, frame);
+    if (medium) shader_->bind(surfaces);
+    surfaces.use();
+    draw<SurfaceVertex>(surface_segments_, order, statistics, [&](const ViewOrder& chunk, SurfaceBatch& batch) {
+        cells.project(chunk, surfaces_->cells(), frame, batch);
+    });
 }
 
 void GlRenderer::draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {

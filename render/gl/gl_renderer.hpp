@@ -14,6 +14,7 @@
 #include "render/gl/objects.hpp"
 #include "render/gl/osmesa_context.hpp"
 #include "render/gl/segment_shader.hpp"
+#include "render/gl/surface_pass.hpp"
 #include "render/gl/triangle_stream.hpp"
 #include "render/prepared_scene.hpp"
 #include "render/renderer.hpp"
@@ -30,19 +31,25 @@ public:
                  Statistics* statistics) override;
 
 private:
+    void prepare_light(const Scene& scene, const Quality& quality, bool same_cells);
+    void prepare_surfaces(const Scene& scene);
+    ViewOrder find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
+    bool needs_order() const { return !surfaces_ || surfaces_->needs_order(); }
     const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
     void draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
     void draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
+    void draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
 
     OsmesaContext context_;
     std::map<std::string, Program> programs_;  // by their text
-    TriangleStream segments_, two_field_segments_, lit_;
+    TriangleStream segments_, two_field_segments_, lit_, surface_segments_;
     Target target_;
     std::optional<PreparedScene> prepared_;
     Method method_;
     // Of method_, for the prepared scene: either light for each pixel or light at the vertices.
     std::unique_ptr<SegmentShader> shader_;
     std::unique_ptr<VertexLighting> lighting_;
+    std::unique_ptr<SurfacePass> surfaces_;  // where the scene has some
 };
 
 }  // namespace cellproj::gl

@@ -73,7 +73,7 @@ MappedBuffer::MappedBuffer(std::size_t bytes) {
     memory_ = {static_cast<std::byte*>(memory), bytes};
 }
 
-Target::Target(ImageSize size, TargetFormat format) : size_(size), format_(format) {
+Target::Target(ImageSize size, TargetFormat format, bool with_depth) : size_(size), format_(format) {
     GLint largest = 0, largest_viewport[2]{};
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
     glGetIntegerv(GL_MAX_VIEWPORT_DIMS, largest_viewport);
@@ -89,6 +89,13 @@ Target::Target(ImageSize size, TargetFormat format) : size_(size), format_(forma
     glCreateFramebuffers(1, &name);
     framebuffer_ = Object<delete_framebuffer>(name);
     glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, color_.name(), 0);
+    if (with_depth) {
+        GLuint depth = 0;
+        glCreateTextures(GL_TEXTURE_2D, 1, &depth);
+        depth_ = Object<delete_texture>(depth);
+        glTextureStorage2D(depth, 1, GL_DEPTH_COMPONENT32F, size.width, size.height);
+        glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth, 0);
+    }
     if (glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         fail("framebuffer", to_string(format) + " to be drawable", "an incomplete framebuffer");
     }
@@ -97,6 +104,7 @@ Target::Target(ImageSize size, TargetFormat format) : size_(size), format_(forma
 void Target::clear_and_bind() const {
     constexpr std::array<GLfloat, 4> nothing{0, 0, 0, 0};
     glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, 0, nothing.data());
+    if (depth_.name() != 0) glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, nothing.data());
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, size_.width, size_.height);
 }

@@ -57,23 +57,23 @@ private:
     std::span<std::byte> memory_;
 };
 
-// A colour buffer of the size of a picture.
+// A colour buffer of the size of a picture, with one for depths where it is asked for.
 class Target {
 public:
     Target() = default;
     // Throws Error (option) when the driver cannot draw that large.
-    Target(ImageSize size, TargetFormat format);
+    Target(ImageSize size, TargetFormat format, bool with_depth);
 
-    bool is(ImageSize size, TargetFormat format) const {
-        return size_.width == size.width && size_.height == size.height && format_ == format;
+    bool is(ImageSize size, TargetFormat format, bool with_depth) const {
+        return size_.width == size.width && size_.height == size.height && format_ == format && (depth_.name() != 0) == with_depth;
     }
-    void clear_and_bind() const;  // transparent black; viewport set
+    void clear_and_bind() const;  // transparent black, depth 0; viewport set
     Image read() const;           // waits for the drawing to end
 
 private:
     ImageSize size_{0, 0};
     TargetFormat format_ = TargetFormat::rgba32f;
-    Object<delete_texture> color_;
+    Object<delete_texture> color_, depth_;
     Object<delete_framebuffer> framebuffer_;
 };
 

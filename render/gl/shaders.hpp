@@ -8,7 +8,10 @@
 namespace cellproj::gl::shaders {
 
 extern const std::string cell_vert;         // needs a prepare_cell behind it
-extern const std::string cell_frag;         // needs a light_of_segment behind it
+extern const std::string cell_frag;         // needs light_glsl and a light_of_segment behind it
+extern const std::string surfaces_vert;     // needs a prepare_cell behind it
+extern const std::string surfaces_frag;     // with a medium: what cell_frag needs
+extern const std::string light_glsl;
 extern const std::string no_cell_glsl;      // a prepare_cell that does nothing
 extern const std::string sampled_glsl;   // behind it: average, homogeneous, linear or stein
 extern const std::string average_glsl;

@@ -31,12 +31,32 @@ constexpr std::array<VertexAttribute, 4> lit_attributes{{{0, 2, offsetof(LitVert
                                                          {1, 1, offsetof(LitVertex, share)},
                                                          {2, 3, offsetof(LitVertex, color)},
                                                          {3, 3, offsetof(LitVertex, weight)}}};
+// All that OpenGL grants: 16 of four floats.
+static_assert(sizeof(SurfaceVertex) == 16 * 4 * sizeof(float));
+constexpr std::size_t half_face = sizeof(SurfaceFace) / 2;
+constexpr std::array<VertexAttribute, 16> surface_attributes{{{0, 4, offsetof(SurfaceVertex, x)},
+                                                             {1, 4, offsetof(SurfaceVertex, ridges)},
+                                                             {2, 4, offsetof(SurfaceVertex, faces)},
+                                                             {3, 4, offsetof(SurfaceVertex, faces) + half_face},
+                                                             {4, 4, offsetof(SurfaceVertex, faces[1])},
+                                                             {5, 4, offsetof(SurfaceVertex, faces[1]) + half_face},
+                                                             {6, 4, offsetof(SurfaceVertex, faces[2])},
+                                                             {7, 4, offsetof(SurfaceVertex, faces[2]) + half_face},
+                                                             {8, 4, offsetof(SurfaceVertex, faces[3])},
+                                                             {9, 4, offsetof(SurfaceVertex, faces[3]) + half_face},
+                                                             {10, 4, offsetof(SurfaceVertex, scalars)},
+                                                             {11, 4, offsetof(SurfaceVertex, first)},
+                                                             {12, 4, offsetof(SurfaceVertex, maps[0])},
+                                                             {13, 4, offsetof(SurfaceVertex, maps[1])},
+                                                             {14, 4, offsetof(SurfaceVertex, maps[2])},
+                                                             {15, 4, offsetof(SurfaceVertex, maps[3])}}};
 
 }  // namespace
 
 std::span<const VertexAttribute> vertex_attributes(const StreamVertex*) { return stream_attributes; }
 std::span<const VertexAttribute> vertex_attributes(const TwoFieldVertex*) { return two_field_attributes; }
 std::span<const VertexAttribute> vertex_attributes(const LitVertex*) { return lit_attributes; }
+std::span<const VertexAttribute> vertex_attributes(const SurfaceVertex*) { return surface_attributes; }
 
 TriangleStream::TriangleStream(std::size_t vertex_bytes, std::span<const VertexAttribute> attributes)
     : vertex_bytes_(vertex_bytes) {

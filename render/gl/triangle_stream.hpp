@@ -22,10 +22,11 @@ struct VertexAttribute {
     std::size_t offset;
 };
 
-// How a vertex type lies in memory and which locations it goes to: of shaders/cell.vert and shaders/lit.vert.
+// How a vertex type lies in memory and which locations it goes to: of shaders/cell.vert, lit.vert and surfaces.vert.
 std::span<const VertexAttribute> vertex_attributes(const StreamVertex*);
 std::span<const VertexAttribute> vertex_attributes(const TwoFieldVertex*);
 std::span<const VertexAttribute> vertex_attributes(const LitVertex*);
+std::span<const VertexAttribute> vertex_attributes(const SurfaceVertex*);
 
 class TriangleStream {
 public:

@@ -22,21 +22,6 @@ layout(location = 0) out vec4 light;  // associated colour, opacity
 // Scalars 0..1, length >= 0, all in scene units.
 vec4 light_of_segment(scalars s_front, scalars s_back, float segment);
 
-// (1 - exp(-d)) / d. Below 1/16 the difference would lose digits; the next term of the series is d^4 / 120 < 2e-7.
-float attenuation_mean(float d) {
-    float series = 1.0 - d * (0.5 - d * (1.0 / 6.0 - d * (1.0 / 24.0)));
-    return d < 0.0625 ? series : (1.0 - exp(-d)) / d;
-}
-
-// 1 - exp(-d), without rounding above 1.
-float opacity_of_depth(float d) { return min(d * attenuation_mean(d), 1.0); }
-
-// Of a segment with the same emission and extinction [per length] everywhere.
-vec4 homogeneous_light(vec3 emission, float extinction, float segment) {
-    float depth = extinction * segment;
-    return vec4(emission * segment * attenuation_mean(depth), opacity_of_depth(depth));
-}
-
 void main() {
     // About a pixel of the cell: the rasterizer's own interpolation, from a corner of the picture on, loses what slopes per pixel
     // times the picture's size.

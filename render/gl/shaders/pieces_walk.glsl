@@ -5,8 +5,8 @@ uniform float is_density;                        // 1, or 0 for the emitter mode
 uniform float step_depth, block_depth, deepest;  // WalkLimits
 
 // The light so far, from the front.
-vec3 color = vec3(0.0);
-float depth_before = 0.0;
+vec3 color;
+float depth_before;
 
 // Colour and extinction at s and at t, both inside the piece, whose first texel is `ends`.
 void light_in_piece(int piece, vec4 ends, float s, float t, out vec4 at_s, out vec4 at_t) {
@@ -83,6 +83,8 @@ void walk(float s_front, float s_back, float segment) {
 }
 
 vec4 light_of_segment(float s_front, float s_back, float segment) {
+    color = vec3(0.0);
+    depth_before = 0.0;
     walk(s_front, s_back, segment);
     return vec4(color, depth_before * attenuation_mean(depth_before));
 }

@@ -1,0 +1,195 @@
+#version 450 core
+// SPDX-License-Identifier: BSD-3-Clause
+// One ray segment inside a cell, cut where isosurfaces cross it (RKE00 sections 5 to 10): the medium before a crossing, then the surface.
+// No table: the surfaces are found in their sorted list, so that the work grows with those crossed.
+//   MEDIUM    there is one (TWO_FIELDS: whose extinction is told by another field); the method's file, behind this one, says what light it gives
+//   LIT       surfaces are shaded by the gradient, one for the cell or
+//   SMOOTH    linear in it
+//   NEAREST   all are opaque and there is no medium: the first crossing, for the depth test
+in vec3 v_ridges;
+flat in vec4 v_faces[8];
+flat in vec4 v_scalars;
+flat in vec3 v_cell;
+flat in vec4 v_map;  // gradient and scalar in the cell
+flat in mat3x4 v_slopes;
+#ifdef TWO_FIELDS
+flat in vec4 v_opacity;  // the second field: value, slopes
+#define scalars vec2     // that of the colour, that of the extinction
+#else
+#define scalars float
+#endif
+
+uniform float inverse_far;     // perspective: 1 / depth of the farthest point
+uniform vec2 principal_point;  // pixels
+uniform float pixels_per_unit; // perspective: at depth 1
+uniform float inverse_near;    // perspective: 1 / depth of the near plane
+uniform float inverse_nearest; // 1 / the largest nearness
+layout(binding = 8) uniform samplerBuffer surfaces;  // three each: threshold, isovalue, opacity; front colour; back colour
+
+layout(location = 0) out vec4 light;  // associated colour, opacity
+
+#ifdef MEDIUM
+// Scalars 0..1, length >= 0, all in scene units.
+vec4 light_of_segment(scalars s_front, scalars s_back, float segment);
+#endif
+
+// How many surfaces each scalar is not below (render/surface_cells.hpp), known to be between both.
+ivec2 ranks(vec2 s, int low, int high) {
+    ivec2 from = ivec2(low), to = ivec2(high);
+    while (any(lessThan(from, to))) {
+        ivec2 middle = (from + to) / 2;  // where a search has ended: its end, and what is behind the list is not read
+        ivec2 read = 3 * min(middle, high - 1);
+        vec2 thresholds = vec2(texelFetch(surfaces, read.x).x, texelFetch(surfaces, read.y).x);
+        bvec2 open = lessThan(from, to), below = lessThan(s, thresholds);
+        to = ivec2(open.x && below.x ? middle.x : to.x, open.y && below.y ? middle.y : to.y);
+        from = ivec2(open.x && !below.x ? middle.x + 1 : from.x, open.y && !below.y ? middle.y + 1 : from.y);
+    }
+    return from;
+}
+
+// Nearness and scalar of the ray on a face between two scalars. Both cells of the face must get the same bits: the same arithmetic
+// on the same numbers, never rearranged.
+vec2 on_face(vec4 nearness_plane, vec4 scalar_plane, vec2 range) {
+    vec2 place = gl_FragCoord.xy - vec2(nearness_plane.w, scalar_plane.w);
+    precise float nearness = nearness_plane.x + nearness_plane.y * place.x + nearness_plane.z * place.y;
+    precise float scalar = scalar_plane.x + scalar_plane.y * place.x + scalar_plane.z * place.y;
+#ifdef PERSPECTIVE
+    precise float inverse_depth = max(nearness + inverse_far, 1e-30);
+    scalar = scalar / inverse_depth;
+#endif
+    return vec2(nearness, clamp(scalar, range.x, range.y));
+}
+
+vec2 ends(float a, float b, float c) { return vec2(min(min(a, b), c), max(max(a, b), c)); }
+
+#ifdef LIT
+uniform vec4 axis_right, axis_down, axis_forward;  // of the camera, in those of the mesh
+uniform vec4 ambient;                              // and the exponent
+uniform float two_sided, light_count;
+layout(binding = 9) uniform samplerBuffer lights;  // two each: direction to it, of length 1 (0: to the eye), diffuse; colour, specular
+
+// classify/lighting.hpp: what of its colour a surface reflects. `to_eye` has length 1.
+vec3 reflected(vec3 gradient, vec3 to_eye) {
+    vec3 size = abs(gradient);
+    float largest = max(max(size.x, size.y), size.z);
+    vec3 normal = -normalize(gradient / largest);
+    if (two_sided > 0.0 && dot(normal, to_eye) < 0.0) normal = -normal;
+    vec3 sum = ambient.rgb;
+    for (float i = 0.0; i < light_count; ++i) {
+        vec4 first = texelFetch(lights, 2 * int(i));
+        vec4 second = texelFetch(lights, 2 * int(i) + 1);
+        vec3 to_light = first.xyz == vec3(0.0) ? to_eye : first.xyz;
+        float facing = dot(normal, to_light);
+        vec3 middle = to_light + to_eye;
+        float highlight = pow(clamp(dot(normal, middle) / max(length(middle), 1e-30), 0.0, 1.0), ambient.w);
+        sum += facing > 0.0 ? second.rgb * (first.w * min(facing, 1.0) + second.w * highlight) : vec3(0.0);
+    }
+    return largest > 0.0 ? sum : vec3(1.0);
+}
+#endif
+
+// In eye space, from the farthest point's depth on: where the field of the cell is told.
+vec3 place_at(vec2 offset, float depth) {
+#ifdef PERSPECTIVE
+    return vec3(offset * (depth + 1.0 / inverse_far), depth);
+#else
+    return vec3(offset, depth);
+#endif
+}
+
+void main() {
+    float ridge = min(min(v_ridges.x, v_ridges.y), v_ridges.z);
+    int other = ridge == v_ridges.x ? 1 : ridge == v_ridges.y ? 2 : 3;
+    vec4 nearness_plane = other == 1 ? v_faces[2] : other == 2 ? v_faces[4] : v_faces[6];
+    vec4 scalar_plane = other == 1 ? v_faces[3] : other == 2 ? v_faces[5] : v_faces[7];
+    vec3 corners = other == 1 ? v_scalars.xzw : other == 2 ? v_scalars.xyw : v_scalars.xyz;  // of that face
+    vec2 on_base = on_face(v_faces[0], v_faces[1], ends(v_scalars.y, v_scalars.z, v_scalars.w));
+    vec2 on_other = on_face(nearness_plane, scalar_plane, ends(corners.x, corners.y, corners.z));
+    bool base_is_front = v_cell.z > 0.0;
+    vec2 front = base_is_front ? on_base : on_other, back = base_is_front ? on_other : on_base;
+
+    vec2 offset = (gl_FragCoord.xy - principal_point) / pixels_per_unit;
+#ifdef PERSPECTIVE
+    float front_inverse = max(front.x + inverse_far, 1e-30), back_inverse = max(back.x + inverse_far, 1e-30);
+    float depth_difference = max(front.x - back.x, 0.0) / (front_inverse * back_inverse);
+    float ray = length(vec3(offset, 1.0));
+    // Cells cut by the near plane are drawn from the eye on (render/cell_stream.hpp).
+    float lead = front_inverse > 0.999 * inverse_near ? ray / front_inverse : 0.0;
+    float front_depth = -front.x / (front_inverse * inverse_far);  // from the farthest point's on
+#else
+    float depth_difference = max(front.x - back.x, 0.0);
+    float ray = 1.0, lead = 0.0;
+    float front_depth = -front.x;
+#endif
+    depth_difference = min(depth_difference, abs(v_cell.z));
+    float segment = depth_difference * ray;
+    // The field at both ends, in the cell's own range beyond which slivers extrapolate. `front` and `back` tell the sides of surfaces.
+    vec3 place_in_front = place_at(offset, front_depth), place_behind = place_at(offset, front_depth + depth_difference);
+    vec4 at_front = v_map + v_slopes * place_in_front, at_back = v_map + v_slopes * place_behind;
+    vec2 range = vec2(min(v_scalars.x, ends(v_scalars.y, v_scalars.z, v_scalars.w).x), max(v_scalars.x, ends(v_scalars.y, v_scalars.z, v_scalars.w).y));
+    vec2 s = clamp(vec2(at_front.w, at_back.w), range.x, range.y);
+#ifdef TWO_FIELDS
+    vec2 s_opacity = v_opacity.xx + vec2(dot(v_opacity.yzw, place_in_front), dot(v_opacity.yzw, place_behind));
+    s_opacity = clamp(s_opacity, 0.0, 1.0);
+#endif
+
+    int first = int(v_cell.x), last = int(v_cell.y);
+    ivec2 both = ranks(vec2(front.y, back.y), first, last);
+    int k = both.x, end = both.y;
+    bool rising = k < end;
+    light = vec4(0.0);
+#ifdef NEAREST
+    if (k == end) discard;
+#endif
+#ifdef LIT
+#ifdef PERSPECTIVE
+    vec3 to_eye = -(offset.x * axis_right.xyz + offset.y * axis_down.xyz + axis_forward.xyz) / ray;
+#else
+    vec3 to_eye = -axis_forward.xyz;
+#endif
+#ifndef SMOOTH
+    vec3 share_of_color = reflected(v_map.xyz, to_eye);
+#endif
+#endif
+    float at = 0.0, s_at = s.x;  // where the last crossing was, as a share of the segment, and the scalar there
+    for (;;) {
+        bool crossed = k != end;
+        int surface = 3 * max(rising ? k : k - 1, 0);
+        vec4 about = texelFetch(surfaces, surface);
+        float share = crossed && s.x != s.y ? clamp((about.y - s.x) / (s.y - s.x), at, 1.0) : 1.0;
+#ifdef MEDIUM
+        float s_here = crossed ? clamp(about.y, min(s.x, s.y), max(s.x, s.y)) : s.y;
+        float part = (share - at) * segment + lead;
+#ifdef TWO_FIELDS
+        vec2 from = vec2(s_at, mix(s_opacity.x, s_opacity.y, at)), to = vec2(s_here, mix(s_opacity.x, s_opacity.y, share));
+        light += (1.0 - light.a) * light_of_segment(from, to, part);
+#else
+        light += (1.0 - light.a) * light_of_segment(s_at, s_here, part);
+#endif
+        s_at = s_here;
+        lead = 0.0;
+#endif
+        vec3 color = texelFetch(surfaces, surface + (rising ? 1 : 2)).rgb;
+#ifdef SMOOTH
+        vec3 share_of_color = reflected(mix(at_front.xyz, at_back.xyz, share), to_eye);
+#endif
+#ifdef LIT
+        color *= share_of_color;
+#endif
+#ifdef NEAREST
+        float depth = front_depth + share * depth_difference;
+#ifdef PERSPECTIVE
+        gl_FragDepth = -depth * inverse_far / (depth + 1.0 / inverse_far) * inverse_nearest;
+#else
+        gl_FragDepth = -depth * inverse_nearest;
+#endif
+        light = vec4(color, 1.0);
+        break;
+#else
+        if (crossed) light += (1.0 - light.a) * vec4(color * about.z, about.z);
+        if (!crossed || light.a >= 1.0) break;
+        at = share;
+        k += rising ? 1 : -1;
+#endif
+    }
+}
