@@ -228,11 +228,13 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     return image;
 }
 
-// Whether some isosurface hides what is behind.
+// Whether isosurfaces may hide what is behind: together they let less than half through, and rays meet them several times.
 bool CpuRenderer::surfaces_may_hide() const {
     const PreparedSurfaces* surfaces = prepared_->surfaces();
-    const auto is_opaque = [](const IsoSurface& surface) { return surface.opacity == 1; };
-    return surfaces && std::ranges::any_of(surfaces->scene().isosurfaces.surfaces(), is_opaque);
+    if (!surfaces) return false;
+    double transmitted = 1.0;
+    for (const IsoSurface& surface : surfaces->scene().isosurfaces.surfaces()) transmitted *= 1.0 - surface.opacity;
+    return transmitted < 0.5;
 }
 
 // Slab by slab from the front, each tile by one task: the same order of operations for any number of threads.
