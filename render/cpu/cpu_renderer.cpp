@@ -225,11 +225,14 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     return image;
 }
 
+// Isosurfaces may hide what is behind where together they let less than half through: rays meet them several times.
 bool CpuRenderer::may_be_opaque() const {
+    if (classification_->may_be_opaque()) return true;
     const PreparedSurfaces* surfaces = prepared_->surfaces();
-    const auto is_opaque = [](const IsoSurface& surface) { return surface.opacity == 1; };
-    return classification_->may_be_opaque() ||
-           (surfaces && std::ranges::any_of(surfaces->scene().isosurfaces.surfaces(), is_opaque));
+    if (!surfaces) return false;
+    double transmitted = 1.0;
+    for (const IsoSurface& surface : surfaces->scene().isosurfaces.surfaces()) transmitted *= 1.0 - surface.opacity;
+    return transmitted < 0.5;
 }
 
 // Slab by slab from the front, each tile by one task: the same order of operations for any number of threads.

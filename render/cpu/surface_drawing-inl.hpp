@@ -152,8 +152,25 @@ HWY_INLINE void add_box(const CellPlanes& planes, std::size_t k, Fragments& f) {
         for (std::int32_t x = 0; x < planes.width[k]; ++x) f.pixel[f.count++] = planes.left[k] + x + tile_side * (planes.top[k] + y);
 }
 
+// Hits that begin behind what their pixel holds, beyond the rounding of float32.
+HWY_INLINE void leave_hidden_out(const CellPlanes& planes, std::size_t k, const float* nearest, Hits& hits) {
+    const std::size_t count = hits.count;
+    hits.count = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::int32_t place = hits.place[i];
+        const float front = hits.front[i], near = planes.base[k] + front;
+        hits.front[hits.count] = front;
+        hits.back[hits.count] = hits.back[i];
+        hits.place[hits.count] = place;
+        const float held = nearest[planes.first_pixel[k] + (place & (tile_side * tile_side - 1))];
+        hits.count += near + 1e-5F * (1.0F + std::abs(near)) >= held;
+    }
+}
+
+// `nearest`: where there is no order, the nearness of what each pixel holds.
 template <bool perspective, bool keyed, class D>
-HWY_NOINLINE void add_crossed_cell(D d, const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile) {
+HWY_NOINLINE void add_crossed_cell(D d, const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile,
+                                   const float* nearest) {
     Fragments& f = tile.fragments;
     const std::size_t begin = f.count;
     const Precision precision = precision_of(cells, planes, k, item, tile);
@@ -162,6 +179,7 @@ HWY_NOINLINE void add_crossed_cell(D d, const ScreenCells& cells, const CellPlan
         add_box(planes, k, f);
     } else if (has_volume) {
         find_hits<true>(planes, k, tile.hits, precision == Precision::float64 ? margin_of<perspective>(planes, k) : 0.0F);
+        if (nearest) leave_hidden_out(planes, k, nearest, tile.hits);
         add_fragments<perspective, false, keyed>(d, cells.view, planes, tile.hits, f);
     }
     if (precision != Precision::float32) {
@@ -387,7 +405,7 @@ HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target
         make_planes<perspective, false>(d, cells, group, count, tile.x, tile.y, target.width, target.height, tile.corners, tile.planes);
         for (std::size_t k = 0; k < count; ++k) {
             if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0 || is_hidden(tile.planes, k, nearest)) continue;
-            add_crossed_cell<perspective, false>(d, cells, tile.planes, k, group[k], tile);
+            add_crossed_cell<perspective, false>(d, cells, tile.planes, k, group[k], tile, nearest.nearness);
             fragments += tile.fragments.count;
             for (std::size_t i = 0; i < tile.fragments.count; ++i) keep_nearest<perspective>(*cells.surfaces, tile, i, nearest);
             tile.fragments.clear();

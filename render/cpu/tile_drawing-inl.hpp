@@ -65,7 +65,8 @@ struct TileState {
 
 // The fragments of one cell of the group, with all that isosurfaces want of them.
 template <bool perspective, bool keyed, class D>
-void add_crossed_cell(D d, const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile);
+void add_crossed_cell(D d, const ScreenCells& cells, const CellPlanes& planes, std::size_t k, std::uint32_t item, TileState& tile,
+                      const float* nearest = nullptr);
 template <bool perspective, class D>
 void composite_with_surfaces(D d, const ScreenCells& cells, const Shading& shading, TileState& tile);
 void append_ends(const TileState& tile, PendingFragments& pending);
