@@ -127,7 +127,7 @@ CellGraph::CellGraph(const TetMesh& mesh, const Adjacency& adjacency) : mesh_(me
         if (radius > 0) scale_ = std::ldexp(1.0, -std::ilogb(radius) - 1);
     }
     number_cells(adjacency);
-    number_points();
+    find_points();
     find_sides();
 }
 
@@ -153,7 +153,13 @@ void CellGraph::number_cells(const Adjacency& adjacency) {
     });
 }
 
-void CellGraph::number_points() {
+void CellGraph::release_points() {
+    std::vector<glm::vec4>().swap(points_);
+    std::vector<std::array<std::uint32_t, 4>>().swap(own_corners_);
+}
+
+void CellGraph::find_points() {
+    if (!points_.empty()) return;
     const auto in_floats = [&](VertexId vertex) { return glm::vec4(glm::vec3((mesh_.points[vertex] - center_) * scale_), 0.0F); };
     if (keeps_order_ && points_are_coherent(mesh_)) {
         points_.resize(mesh_.points.size());

@@ -108,6 +108,7 @@ ViewOrder VisibilitySorter::order(const Eye& eye, OrderReport* report, std::opti
 
 // Each method has its memory to itself: what others keep for their next view goes.
 void VisibilitySorter::State::make_room_for(OrderMethod method) {
+    if (method != OrderMethod::power) graph.find_points();
     const bool by_keys = method == OrderMethod::centroid || method == OrderMethod::power;
     if (by_keys) {
         topological.release();
@@ -157,9 +158,11 @@ std::span<const CellId> VisibilitySorter::State::order_by_powers(const Eye& eye,
                                                                  OrderReport& report) {
     if (!powers) powers.emplace(graph);
     auto places = key_sort.sort(graph.size(), powers->keys(graph, eye, visible));
-    if (!is_delaunay()) return in_place_in_callers_numbers(places);
-    report.exact = powers->settle(graph, eye, places, key_sort.scratch());
-    if (report.exact) return in_place_in_callers_numbers(places);
+    report.exact = is_delaunay() && powers->settle(graph, eye, places, key_sort.scratch());
+    if (report.exact || !*delaunay) {
+        graph.release_points();
+        return in_place_in_callers_numbers(places);
+    }
     if (visible.empty()) {
         make_room_for(OrderMethod::mpvo);
         return order_by_relations(eye, report);

@@ -132,7 +132,6 @@ TEST_F(IsoOptions, WrongOnesAreRefusedByName) {
     expect_refused("--iso 5:red:1:2", {"--iso again"});
     expect_refused("--iso 5 --iso 6,5", {"--iso", "5", "twice"});
     expect_refused("--iso 5 --light 0,0,0", {"--light"});
-    expect_refused("--iso 5 --backend gl", {"--backend cpu"});
 }
 
 TEST_F(IsoOptions, ValuesWithoutASurfaceAreNotSilent) {
