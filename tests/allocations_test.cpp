@@ -17,8 +17,15 @@
 
 namespace {
 
-constexpr std::size_t large = 4096;  // what tasks need is smaller
 std::atomic<std::size_t> large_bytes = 0;
+
+}  // namespace
+
+#if !CELLPROJ_SANITIZED
+
+namespace {
+
+constexpr std::size_t large = 4096;  // what tasks need is smaller
 
 void* counted(std::size_t size, std::size_t alignment) {
     if (size >= large) large_bytes += size;
@@ -29,8 +36,6 @@ void* counted(std::size_t size, std::size_t alignment) {
 }
 
 }  // namespace
-
-#if !CELLPROJ_SANITIZED
 
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"  // both are replaced
 void* operator new(std::size_t size) { return counted(size, 0); }
