@@ -22,6 +22,7 @@
 #include "render/cpu/kernels.hpp"
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -31,6 +32,7 @@ namespace {
 using testing_support::constant_medium;
 using testing_support::grid_mesh;
 using testing_support::linear;
+using testing_support::max_difference;
 using testing_support::point_field;
 using testing_support::ramp;
 using testing_support::scene_of;
@@ -64,17 +66,6 @@ double worst(const Image& image, const std::vector<PixelTruth>& truths) {
 
 double error_of(const Scene& scene, const Camera& camera, ImageSize size = small, const Quality& quality = {}) {
     return worst(cpu().render(scene, camera, size, quality), Reference(scene).picture(camera, size, slack));
-}
-
-double max_difference(const Image& a, const Image& b) {
-    EXPECT_EQ(a.pixels.size(), b.pixels.size());
-    double largest = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i)
-        for (int k = 0; k < 4; ++k) {
-            const double difference = std::abs(static_cast<double>(a.pixels[i][k]) - b.pixels[i][k]);
-            if (!(difference <= largest)) largest = difference;  // NaN counts as a difference
-        }
-    return largest;
 }
 
 const std::vector<IsoSurface> three{{0.3, {0.2, 0.9, 0.4}, 0.5, {}}, {0.5, {1, 0, 0}, 0.25, glm::dvec3(0, 0, 1)}, {0.7, {0.5, 0.5, 0.5}, 0.8, {}}};
