@@ -40,7 +40,6 @@ void for_each_part(std::size_t parts, Body body) {
 
 }  // namespace
 
-// Returns the sum of all counts.
 std::size_t DigitCounts::find_places() {
     sums_.assign(digits_, 0);
     for (std::size_t i = 0; i < counts_.size(); i += digits_) {

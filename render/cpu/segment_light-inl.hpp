@@ -42,15 +42,6 @@ HWY_INLINE V exp_of_minus(D d, V x) {
 // Depths up to here are shallow: short series serve, and differences would lose digits.
 inline constexpr float shallow_depth = 0.125F;
 
-// e^(−x) for x ≤ shallow_depth: the next term is x⁵/120 < 3e-7.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V exp_of_minus_shallow(D d, V x) {
-    V series = hn::NegMulAdd(hn::Set(d, 1.0F / 24), x, hn::Set(d, 1.0F / 6));
-    series = hn::NegMulAdd(series, x, hn::Set(d, 0.5F));
-    series = hn::NegMulAdd(series, x, hn::Set(d, 1.0F));
-    return hn::NegMulAdd(series, x, hn::Set(d, 1.0F));
-}
-
 // (1 − e^(−D))/D for D ≤ shallow_depth: the next term is D⁵/720 < 5e-8.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V mean_transmittance_shallow(D d, V depth) {
@@ -347,8 +338,8 @@ public:
 
     HWY_INLINE LightInPiece(D d, const PieceArrays& table, std::int32_t piece)
         : d_(d), begin_(hn::Set(d, table.begin[at(piece)])), per_width_(hn::Set(d, table.inverse_width[at(piece)])),
-          extinction_(d, table.extinction, at(piece)), red_(d, at(piece), table, 0), green_(d, at(piece), table, 1),
-          blue_(d, at(piece), table, 2) {}
+          extinction_(d, table.extinction[0], table.extinction[1], at(piece)), red_(d, table.color[0][0], table.color[1][0], at(piece)),
+          green_(d, table.color[0][1], table.color[1][1], at(piece)), blue_(d, table.color[0][2], table.color[1][2], at(piece)) {}
 
     // Right where `depth` is at most mean_place_depth.
     HWY_INLINE LightOf<V> operator()(V s_f, V s_b, V length, V& depth) const {
@@ -367,10 +358,8 @@ private:
     // From the value at a piece's begin, t = 0, to that at its end, t = 1.
     struct Linear {
         V first, change;
-        HWY_INLINE Linear(D d, const std::vector<float> (&ends)[2], std::size_t i)
-            : first(hn::Set(d, ends[0][i])), change(hn::Set(d, ends[1][i] - ends[0][i])) {}
-        HWY_INLINE Linear(D d, std::size_t i, const PieceArrays& table, std::size_t channel)
-            : first(hn::Set(d, table.color[0][channel][i])), change(hn::Set(d, table.color[1][channel][i] - table.color[0][channel][i])) {}
+        HWY_INLINE Linear(D d, const std::vector<float>& begins, const std::vector<float>& ends, std::size_t i)
+            : first(hn::Set(d, begins[i])), change(hn::Set(d, ends[i] - begins[i])) {}
         HWY_INLINE V at(V t) const { return hn::MulAdd(change, t, first); }
     };
     static std::size_t at(std::int32_t piece) { return static_cast<std::size_t>(piece); }
