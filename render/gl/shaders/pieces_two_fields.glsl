@@ -37,16 +37,14 @@ vec4 light_of_segment(vec2 s_front, vec2 s_back, float segment) {
         float depth = part * 0.5 * (extinction.x + extinction.y);
         float r = depth > 0.0 ? (extinction.y - extinction.x) / (extinction.y + extinction.x) : 0.0;
 
-        // The next step of equal optical depth: D(t) = depth * ((1 - r) * t + r * t * t).
+        // The next step of equal optical depth.
         float steps = max(1.0, ceil(depth / step_depth));
         taken += 1.0;
         bool whole = !(taken < steps);
         float share = taken / steps;
-        float root = sqrt(max(0.0, (1.0 - r) * (1.0 - r) + 4.0 * r * share));
-        float behind = whole ? 1.0 : min(1.0, 2.0 * share / (1.0 - r + root));
-        vec4 t = begin + (behind - begin) * gauss_position;
-        vec4 q = is_density > 0.0 ? depth * (1.0 - r + 2.0 * r * t) : vec4(part);
-        vec4 light = q * ((behind - begin) * gauss_weight) * exp(-depth_before - depth * t * (1.0 - r + r * t));
+        float behind = whole ? 1.0 : place_of_depth(r, share);
+        vec4 t;
+        vec4 light = light_of_step(is_density > 0.0, depth, r, part, depth_before, begin, behind, t);
         t = mix(vec4(color_at.x), vec4(color_at.y), t);
         color += dot(light, 1.0 - t) * color_begin + dot(light, t) * color_end;
 

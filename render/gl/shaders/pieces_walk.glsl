@@ -18,8 +18,8 @@ void light_in_piece(int piece, vec4 ends, float s, float t, out vec4 at_s, out v
     at_t = vec4(mix(begin, end, at.y), extinction.y);
 }
 
-// Between two scalars of one piece, with colour and extinction there, `part` of the ray. Steps of equal optical depth, found by
-// solving D(t) = depth * ((1 - r) * t + r * t * t), a Gauss rule in each.
+// Between two scalars of one piece, with colour and extinction there, `part` of the ray. Steps of equal optical depth,
+// a Gauss rule in each.
 void add_part(vec4 front, vec4 back, float part) {
     float depth = part * 0.5 * (front.a + back.a);
     float r = depth > 0.0 ? (back.a - front.a) / (back.a + front.a) : 0.0;
@@ -28,11 +28,9 @@ void add_part(vec4 front, vec4 back, float part) {
     float begin = 0.0;
     for (float k = 1.0;; ++k) {
         float share = k / steps;
-        float root = sqrt(max(0.0, (1.0 - r) * (1.0 - r) + 4.0 * r * share));
-        float behind = k < steps ? min(1.0, 2.0 * share / (1.0 - r + root)) : 1.0;
-        vec4 t = begin + (behind - begin) * gauss_position;
-        vec4 q = is_density > 0.0 ? depth * (1.0 - r + 2.0 * r * t) : vec4(part);
-        vec4 light = q * ((behind - begin) * gauss_weight) * exp(-depth_before - depth * t * (1.0 - r + r * t));
+        float behind = k < steps ? place_of_depth(r, share) : 1.0;
+        vec4 t;
+        vec4 light = light_of_step(is_density > 0.0, depth, r, part, depth_before, begin, behind, t);
         weights += vec2(dot(light, 1.0 - t), dot(light, t));
         begin = behind;
         if (!(k < steps) || depth_before + depth * share >= deepest) break;
