@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mesh/error.hpp"
-#include "mesh/face_triangles.hpp"
 
 namespace cellproj {
 
@@ -22,12 +21,6 @@ bool finite(const Region& region) {
 
 std::uint32_t facet_of(const Surface& surface, std::size_t polygon) {
     return surface.facets.empty() ? static_cast<std::uint32_t>(polygon) : surface.facets[polygon];
-}
-
-std::vector<std::array<VertexId, 3>> triangles_of(const Surface& surface) {
-    std::vector<std::array<VertexId, 3>> triangles;
-    for (const auto& polygon : surface.polygons) triangulate_face(polygon, surface.points, triangles);
-    return triangles;
 }
 
 void validate(const Surface& surface) {

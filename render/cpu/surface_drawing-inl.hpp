@@ -419,7 +419,7 @@ HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target
         make_planes<perspective, false>(d, cells, group, count, tile.x, tile.y, target.width, target.height, tile.corners, tile.planes);
         for (std::size_t k = 0; k < count; ++k) {
             if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0 || is_hidden(tile.planes, k, nearest)) continue;
-            if (tile.window && !tile.window->may_keep(tile.planes, k)) continue;
+            if (tile.window && !tile.window->may_keep(cells.view, tile.planes, k)) continue;
             add_crossed_cell<perspective, false>(d, cells, tile.planes, k, group[k], tile, nearest.nearness);
             fragments += tile.fragments.count;
             for (std::size_t i = 0; i < tile.fragments.count; ++i)

@@ -324,7 +324,7 @@ HWY_INLINE void add_group(D d, const ScreenCells& cells, const std::uint32_t* gr
     for (std::size_t k = 0; k < count; ++k) {
         if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0) continue;
         if (!surfaces && (tile.planes.front_faces[k] == 0 || tile.planes.front_faces[k] == 15)) continue;  // no volume
-        if (tile.window && !tile.window->may_keep(tile.planes, k)) continue;
+        if (tile.window && !tile.window->may_keep(cells.view, tile.planes, k)) continue;
         if (tile.some_closed && !meets_open_pixel(tile, tile.planes, k)) continue;
         const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
         if constexpr (surfaces) {

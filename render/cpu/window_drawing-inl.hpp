@@ -42,9 +42,10 @@ struct WindowTile {
     WindowTile(const WindowTile&) = delete;
     WindowTile& operator=(const WindowTile&) = delete;
 
-    // Whether the cell in column k may have a part that some ray of the tile keeps.
-    bool may_keep(const CellPlanes& cell, std::size_t k) const {
-        return cell.anchor[k] + cell.nearest[k] > farthest && cell.anchor[k] + cell.farthest[k] < nearest;
+    // Whether the cell in column k may have a part that some ray of the tile keeps. Those at the near plane begin at the eye.
+    bool may_keep(const View& view, const CellPlanes& cell, std::size_t k) const {
+        const bool ends_before = cell.anchor[k] + cell.nearest[k] <= farthest && !(at_eye && cell.base[k] + cell.nearest[k] > view.near_plane);
+        return !ends_before && cell.anchor[k] + cell.farthest[k] < nearest;
     }
 };
 

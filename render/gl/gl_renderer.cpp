@@ -256,7 +256,7 @@ void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, 
     const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
                                       shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
                                       surfaces_->defines(frame.perspective) + (windows_ ? "#define WINDOW\n" : ""));
-    surfaces_->bind(surfaces, cells, frame);
+    surfaces_->bind(surfaces, cells, frame, windows_.has_value());
     if (windows_) windows_->bind(surfaces);
     if (medium) shader_->bind(surfaces);
     surfaces.use();
