@@ -13,6 +13,7 @@
 
 #include "apps/scenes/measured_scenes.hpp"
 #include "mesh/error.hpp"
+#include "render/cpu/kernels.hpp"
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/cut_scenes.hpp"
@@ -75,9 +76,9 @@ TEST_P(ClipOfEither, AConstantMediumKeepsItsChord) {
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const Scene scene = clipped(whole, regions[i]);
         EXPECT_LT(error_of_chords(to_image(Reference(scene).picture(camera, size), size), camera, regions[i]), 1e-7) << i;  // Image is float32
-        EXPECT_LT(error_of_chords(cpu().render(scene, camera, size), camera, regions[i]), 2e-6) << i;
-        EXPECT_LT(error_of_chords(cpu().render(scene, camera, size, {.order_per_pixel = true}), camera, regions[i]), 2e-6) << i;
-        EXPECT_LT(error_of_chords(gl().render(scene, camera, size), camera, regions[i]), 2e-4) << i;
+        EXPECT_LT(error_of_chords(cpu_backend().render(scene, camera, size), camera, regions[i]), 2e-6) << i;
+        EXPECT_LT(error_of_chords(cpu_backend().render(scene, camera, size, {.order_per_pixel = true}), camera, regions[i]), 2e-6) << i;
+        EXPECT_LT(error_of_chords(gl_backend().render(scene, camera, size), camera, regions[i]), 2e-4) << i;
     }
 }
 
@@ -86,7 +87,7 @@ TEST_P(ClipOfEither, BothSidesTogetherAreTheWhole) {
     const ImageSize size{40, 40};
     const Camera camera = view_of_unit_cube(GetParam());
     const Scene scene = scene_of(grid_mesh(5, 0.2), scenes::waves, ramp());
-    for (Renderer* renderer : {&cpu(), &gl()}) {
+    for (Renderer* renderer : {&cpu_backend(), &gl_backend()}) {
         const Image whole = renderer->render(scene, camera, size);
         const Image one = renderer->render(clipped(scene, regions[0]), camera, size);
         const Image other = renderer->render(clipped(scene, regions[1]), camera, size);
@@ -95,20 +96,20 @@ TEST_P(ClipOfEither, BothSidesTogetherAreTheWhole) {
             const double product = (1.0 - one.pixels[i].a) * (1.0 - other.pixels[i].a);
             worst = std::max(worst, std::abs(product - (1.0 - whole.pixels[i].a)));
         }
-        EXPECT_LT(worst, 5e-6) << (renderer == &cpu() ? "cpu" : "gl");  // twenty-odd factors of float32
+        EXPECT_LT(worst, 5e-6) << (renderer == &cpu_backend() ? "cpu" : "gl");  // twenty-odd factors of float32
     }
 }
 
 TEST_P(ClipOfEither, RampsAgreeWithTheJudge) {
-    const ImageSize size = CELLPROJ_SANITIZED ? ImageSize{16, 16} : ImageSize{48, 48};
+    const ImageSize size = CELLPROJ_SANITIZED ? ImageSize{12, 12} : ImageSize{36, 36};
     for (const Camera& camera : {view_of_unit_cube(GetParam()), inside_of_unit_cube(GetParam())}) {
         const Scene whole = scene_of(grid_mesh(5, 0.2), linear, ramp());
         for (std::size_t i = 0; i < regions.size(); ++i) {
             const Scene scene = clipped(whole, regions[i]);
             const auto truths = Reference(scene).picture(camera, size, rasterizer_slack);
-            EXPECT_LT(largest(compare(cpu().render(scene, camera, size), truths)), cpu_bound(camera)) << i;
-            EXPECT_LT(largest(compare(cpu().render(scene, camera, size, {.order_per_pixel = true}), truths)), cpu_bound(camera)) << i;
-            EXPECT_LT(largest(compare(gl().render(scene, camera, size), truths)), 2e-3) << i;
+            EXPECT_LT(largest(compare(cpu_backend().render(scene, camera, size), truths)), cpu_bound(camera)) << i;
+            EXPECT_LT(largest(compare(cpu_backend().render(scene, camera, size, {.order_per_pixel = true}), truths)), cpu_bound(camera)) << i;
+            EXPECT_LT(largest(compare(gl_backend().render(scene, camera, size), truths)), 2e-3) << i;
         }
     }
 }
@@ -122,8 +123,8 @@ TEST_P(ClipOfEither, FieldsOnCellsAndOtherMethods) {
     for (const auto& tet : mesh.tets) of_cells.values.push_back(linear(mesh.points[tet[0]]));
     const Scene cells = clipped(scene_of(mesh, of_cells, ramp()), regions[0]);
     const auto truths = Reference(cells).picture(camera, size, rasterizer_slack);
-    EXPECT_LT(largest(compare(cpu().render(cells, camera, size), truths)), cpu_bound(camera));
-    EXPECT_LT(largest(compare(gl().render(cells, camera, size), truths)), 2e-3);
+    EXPECT_LT(largest(compare(cpu_backend().render(cells, camera, size), truths)), cpu_bound(camera));
+    EXPECT_LT(largest(compare(gl_backend().render(cells, camera, size), truths)), 2e-3);
 
     const Scene points = clipped(scene_of(mesh, linear, ramp()), regions[0]);
     const auto of_points = Reference(points).picture(camera, size, rasterizer_slack);
@@ -131,13 +132,13 @@ TEST_P(ClipOfEither, FieldsOnCellsAndOtherMethods) {
         const Quality quality{.method = parse_method(method, "method")};
         // Their own error on this scene, where it is not clipped, is as large: what they do in a segment is not exact.
         const double bound = std::string(method) == "exact" ? 1e-5 : 5e-3;
-        EXPECT_LT(largest(compare(cpu().render(points, camera, size, quality), of_points)), bound) << method;
-        EXPECT_LT(largest(compare(gl().render(points, camera, size, quality), of_points)), std::max(bound, 2e-3)) << method;
+        EXPECT_LT(largest(compare(cpu_backend().render(points, camera, size, quality), of_points)), bound) << method;
+        EXPECT_LT(largest(compare(gl_backend().render(points, camera, size, quality), of_points)), std::max(bound, 2e-3)) << method;
     }
 
     Scene two = points;
     two.opacity_field = std::make_shared<ScalarField>(point_field(mesh, [](const glm::dvec3& p) { return p.z; }));
-    EXPECT_LT(largest(compare(gl().render(two, camera, size), Reference(two).picture(camera, size, rasterizer_slack))), 2e-3);
+    EXPECT_LT(largest(compare(gl_backend().render(two, camera, size), Reference(two).picture(camera, size, rasterizer_slack))), 2e-3);
 }
 
 // Planes along rays, through the eye, and of regions with nothing in them.
@@ -159,8 +160,8 @@ TEST_P(ClipOfEither, PlanesWhereTheyAreHardest) {
     };
     for (std::size_t i = 0; i < hard.size(); ++i) {
         const Scene scene = clipped(whole, hard[i]);
-        for (Renderer* renderer : {&cpu(), &gl()})
-            EXPECT_LT(error_of_chords(renderer->render(scene, camera, size), camera, hard[i]), 1e-5) << i << (renderer == &cpu() ? " cpu" : " gl");
+        for (Renderer* renderer : {&cpu_backend(), &gl_backend()})
+            EXPECT_LT(error_of_chords(renderer->render(scene, camera, size), camera, hard[i]), 1e-5) << i << (renderer == &cpu_backend() ? " cpu" : " gl");
         EXPECT_LT(error_of_chords(to_image(Reference(scene).picture(camera, size), size), camera, hard[i]), 1e-7) << i;
     }
 }
@@ -176,8 +177,8 @@ TEST(ClipRegion, BetweenTheEyeAndTheNearPlane) {
             const Scene scene = clipped(whole, {{camera.eye + depth * ahead, side * ahead}});
             const auto truths = Reference(scene).picture(camera, size);
             // 1e-7 of the distance, 1/200 of which is an optical depth of 1; beyond that it is float32 alone.
-            EXPECT_LT(largest(compare(cpu().render(scene, camera, size), truths)), 2e-5) << depth << side;
-            EXPECT_LT(largest(compare(gl().render(scene, camera, size), truths)), 2e-3) << depth << side;
+            EXPECT_LT(largest(compare(cpu_backend().render(scene, camera, size), truths)), 2e-5) << depth << side;
+            EXPECT_LT(largest(compare(gl_backend().render(scene, camera, size), truths)), 2e-3) << depth << side;
         }
 }
 
@@ -195,7 +196,7 @@ TEST_P(ClipOfEither, AtAnyScaleAndPlace) {
         plane.point = scale * plane.point + place;
         return renderer.render(clipped(scene_of(mesh, field, with_scaled_extinction(ramp(), 1 / scale)), {plane}), camera, size);
     };
-    for (Renderer* renderer : {&cpu(), &gl()}) {
+    for (Renderer* renderer : {&cpu_backend(), &gl_backend()}) {
         const Image usual = picture(*renderer, 1, {0, 0, 0});
         for (const double scale : {1e-12, 1e12}) EXPECT_LT(max_difference(usual, picture(*renderer, scale, {0, 0, 0})), 2e-6) << scale;
         // Points at 1e6 are multiples of 1e-10: the mesh itself is another, by some 1e-8 of a pixel.
@@ -205,7 +206,7 @@ TEST_P(ClipOfEither, AtAnyScaleAndPlace) {
 
 // Translucent and opaque isosurfaces, alone and in a medium, flat and smooth.
 TEST_P(ClipOfEither, IsosurfacesAgreeWithTheJudge) {
-    const ImageSize size = CELLPROJ_SANITIZED ? ImageSize{12, 12} : ImageSize{40, 40};
+    const ImageSize size = CELLPROJ_SANITIZED ? ImageSize{10, 10} : ImageSize{24, 24};
     for (const Camera& camera : {view_of_unit_cube(GetParam()), inside_of_unit_cube(GetParam())})
         for (const bool medium : {false, true})
             for (const double opacity : {0.4, 1.0})
@@ -215,9 +216,9 @@ TEST_P(ClipOfEither, IsosurfacesAgreeWithTheJudge) {
                     for (const std::size_t region : {std::size_t{0}, std::size_t{4}}) {
                         const Scene cut = clipped(scene, regions[region]);
                         const auto truths = Reference(cut).picture(camera, size, rasterizer_slack);
-                        EXPECT_LT(largest(compare(cpu().render(cut, camera, size), truths)), cpu_bound(camera)) << medium << opacity << region;
-                        EXPECT_LT(largest(compare(cpu().render(cut, camera, size, {.order_per_pixel = true}), truths)), cpu_bound(camera)) << medium << opacity << region;
-                        EXPECT_LT(largest(compare(gl().render(cut, camera, size), truths)), 2e-3) << medium << opacity << region;
+                        EXPECT_LT(largest(compare(cpu_backend().render(cut, camera, size), truths)), cpu_bound(camera)) << medium << opacity << region;
+                        EXPECT_LT(largest(compare(cpu_backend().render(cut, camera, size, {.order_per_pixel = true}), truths)), cpu_bound(camera)) << medium << opacity << region;
+                        EXPECT_LT(largest(compare(gl_backend().render(cut, camera, size), truths)), 2e-3) << medium << opacity << region;
                     }
                 }
 }
@@ -230,8 +231,24 @@ TEST_P(ClipOfEither, WhatKeepsAllChangesNothing) {
     for (const bool surfaces : {false, true}) {
         if (surfaces) scene.surfaces = three_surfaces(0.5, Shading::smooth);
         const Scene kept = clipped(scene, {{{0, 0, -2}, {0, 0, 1}}});
-        EXPECT_EQ(max_difference(cpu().render(scene, camera, size), cpu().render(kept, camera, size)), 0.0);
-        EXPECT_LT(max_difference(gl().render(scene, camera, size), gl().render(kept, camera, size)), 1e-6);
+        EXPECT_EQ(max_difference(cpu_backend().render(scene, camera, size), cpu_backend().render(kept, camera, size)), 0.0);
+        EXPECT_LT(max_difference(gl_backend().render(scene, camera, size), gl_backend().render(kept, camera, size)), 1e-6);
+    }
+}
+
+// Vectors of 16, 8 and 4 lanes: the same segments, sums in another order.
+TEST_P(ClipOfEither, ByEveryInstructionSet) {
+    const ImageSize size{40, 40};
+    const Camera camera = view_of_unit_cube(GetParam());
+    Scene scene = clipped(scene_of(grid_mesh(6, 0.2), linear, ramp()), regions[0]);
+    for (const bool surfaces : {false, true}) {
+        if (surfaces) scene.surfaces = three_surfaces(0.5, Shading::flat);
+        const Image best = cpu_backend().render(scene, camera, size);
+        for (const std::string& set : cpu::instruction_sets()) {
+            cpu::use_instruction_set(set);
+            EXPECT_LT(max_difference(cpu_backend().render(scene, camera, size), best), 2e-6) << set;
+        }
+        cpu::use_instruction_set(cpu::instruction_sets().front());
     }
 }
 
@@ -256,7 +273,7 @@ TEST(ClipRegion, RefusesPlanesWithoutAPlace) {
     for (const HalfSpace& bad : {HalfSpace{{0, 0, 0}, {0, 0, 0}}, HalfSpace{{0, 0, NAN}, {0, 0, 1}}, HalfSpace{{0, 0, 0}, {0, INFINITY, 1}}}) {
         const Scene scene = clipped(scene_of(grid_mesh(2), linear, ramp()), {bad});
         EXPECT_THROW(Reference{scene}, Error);
-        for (Renderer* renderer : {&cpu(), &gl()}) EXPECT_THROW(renderer->render(scene, view_of_unit_cube(Camera::Projection::parallel), {8, 8}), Error);
+        for (Renderer* renderer : {&cpu_backend(), &gl_backend()}) EXPECT_THROW(renderer->render(scene, view_of_unit_cube(Camera::Projection::parallel), {8, 8}), Error);
     }
 }
 
@@ -264,7 +281,7 @@ TEST(ClipRegion, RefusesPlanesWithoutAPlace) {
 TEST(ClipRegion, LightAtVerticesIsRefused) {
     const Scene scene = clipped(scene_of(grid_mesh(2), linear, ramp()), regions[0]);
     const Quality quality{.method = parse_method("shirley-tuchman", "method")};
-    EXPECT_THROW(gl().render(scene, view_of_unit_cube(Camera::Projection::parallel), {8, 8}, quality), Error);
+    EXPECT_THROW(gl_backend().render(scene, view_of_unit_cube(Camera::Projection::parallel), {8, 8}, quality), Error);
 }
 
 }  // namespace

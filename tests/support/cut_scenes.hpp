@@ -17,12 +17,12 @@
 
 namespace cellproj::testing_support {
 
-inline Renderer& cpu() {
+inline Renderer& cpu_backend() {
     static const auto renderer = make_renderer(Backend::cpu);
     return *renderer;
 }
 
-inline Renderer& gl() {
+inline Renderer& gl_backend() {
     static const auto renderer = make_renderer(Backend::gl_osmesa);
     return *renderer;
 }
