@@ -36,7 +36,9 @@ private:
 class PreparedScene {
 public:
     // Throws Error (data) when the field does not fit the mesh or has no finite value.
-    explicit PreparedScene(Scene scene);
+    //
+    // `surface_margin`: how far below an isovalue its surface begins (PreparedSurfaces).
+    explicit PreparedScene(Scene scene, double surface_margin = 0.0);
 
     const Scene& scene() const { return scene_; }
     const SceneUnits& units() const { return units_; }
@@ -81,6 +83,7 @@ private:
     std::optional<double> mean_chord_;  // once somebody has asked
     std::unique_ptr<const RayIndex> ray_index_;  // once an order was to be judged
     std::vector<BinRange> bins_, opacity_bins_;  // #T; none without an opacity field
+    double surface_margin_;
     std::optional<PreparedSurfaces> surfaces_;
     bool has_medium_ = true;
     std::vector<std::uint8_t> visible_;

@@ -109,9 +109,8 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
-        Scene medium = scene;  // surfaces are prepared apart: others of them leave the rest as it is
-        medium.surfaces = nullptr;
-        prepared_.emplace(std::move(medium));
+        surfaces_.reset();
+        prepared_.emplace(scene, float32_margin);
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
@@ -142,16 +141,11 @@ void GlRenderer::prepare_light(const Scene& scene, const Quality& quality, bool 
 }
 
 void GlRenderer::prepare_surfaces(const Scene& scene) {
-    if (!SurfacePass::is_needed(scene)) {
+    if (prepared_->scene().surfaces != scene.surfaces) {
+        prepared_->set_surfaces(scene.surfaces);
         surfaces_.reset();
-        return;
     }
-    if (!surfaces_ || !surfaces_->is_of(scene)) {
-        surfaces_.reset();  // none of another scene behind a failure
-        validate(scene);
-        surfaces_ = std::make_unique<SurfacePass>(scene, prepared_->units());
-    }
-    surfaces_->set_visible(scene.transfer, prepared_->visible());
+    if (!surfaces_ && has_surfaces(scene)) surfaces_ = std::make_unique<SurfacePass>(*prepared_);
 }
 
 const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
@@ -168,7 +162,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     validate(camera, "camera");
     validate(size, "size");
     prepare(scene, quality);
-    const bool sorted = needs_order();
+    const bool sorted = !prepared_->only_opaque_surfaces();
     if (!target_.is(size, quality.target, !sorted)) target_ = Target(size, quality.target, !sorted);
     statistics.ms.plan = total.ms();
 
@@ -178,7 +172,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.ms.sort = sort.ms();
 
     const Stopwatch transform;
-    const CellStream cells(*prepared_, camera, size, surfaces_ ? surfaces_->drawn() : std::span<const std::uint8_t>{});
+    const CellStream cells(*prepared_, camera, size);
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
     sorted ? set_blending() : set_depth_test();
@@ -215,10 +209,8 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 }
 
 ViewOrder GlRenderer::find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report) {
-    if (!surfaces_) return prepared_->order(camera, size, quality.order, &report);
-    if (!surfaces_->needs_order()) return surfaces_->any_order();
-    const PixelGrid pixels = pixel_grid(camera, size);
-    return prepared_->sorter().order(camera.viewpoint(), &report, quality.order, &pixels, surfaces_->drawn());
+    if (prepared_->only_opaque_surfaces()) return {prepared_->surfaces()->crossed(), {}};
+    return prepared_->order(camera, size, quality.order, &report);
 }
 
 void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
@@ -242,7 +234,7 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
 
 void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
     const NearnessFrame frame = cells.nearness_frame();
-    const bool medium = surfaces_->has_medium();
+    const bool medium = prepared_->has_medium();
     const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
                                       shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
                                       surfaces_->defines(frame.perspective));
@@ -250,7 +242,7 @@ void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, 
     if (medium) shader_->bind(surfaces);
     surfaces.use();
     draw<SurfaceVertex>(surface_segments_, order, statistics, [&](const ViewOrder& chunk, SurfaceBatch& batch) {
-        cells.project(chunk, surfaces_->cells(), frame, batch);
+        cells.project(chunk, frame, batch);
     });
 }
 
