@@ -41,7 +41,7 @@ TEST(PreparedSurfaces, CrossedCellsHavePointsOnBothSides) {
     Scene scene = waves_with({{0.5}}, Shading::unlit);
     for (const double margin : {0.0, float32_margin}) {
         for (const IsoSurface& surface : hard_values(*scene.field)) {
-            scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces({surface}), Shading::unlit, {}});
+            scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::vector{surface}), Shading::unlit, {}});
             const PreparedSurfaces prepared(scene, units_of(scene), margin);
             // Scalars within a margin of an isovalue are told by float32; none but those that have it are so near here.
             std::vector<CellId> crossed;
@@ -60,7 +60,7 @@ TEST(PreparedSurfaces, OtherIsovaluesKeepTheGradientsAndOtherShadingDoesNot) {
     PreparedScene prepared(scene);
     const glm::vec3* gradients = prepared.surfaces()->gradients().data();
     const auto set = [&](double value, Shading shading) {
-        prepared.set_surfaces(std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces({{value}}), shading, {}}));
+        prepared.set_surfaces(std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::vector<IsoSurface>{{value}}), shading, {}}));
     };
     set(0.3, Shading::smooth);
     EXPECT_EQ(prepared.surfaces()->gradients().data(), gradients);
