@@ -112,7 +112,7 @@ struct Options {
     std::string scene = "bluntfin";
     std::vector<std::string> contenders = iso_contender_names();
     std::vector<int> values{1, 2, 10, 100, 1000};
-    int size = 512, frames = 3, rounds = 3, most_translucent_vtk = 10, most_opaque_vtk = 100;
+    int size = 512, frames = 3, rounds = 3, most_translucent_vtk = 10, most_opaque_vtk = 10;
 };
 
 struct Cost {
@@ -212,6 +212,7 @@ void print_pairs(const Options& options, Players& players, const char* heading, 
                  const std::function<std::string(const IsoTask&)>& label) {
     Options ours = options;
     std::erase(ours.contenders, "vtk");
+    if (ours.contenders.empty()) return;
     const auto costs = measure(ours, players, tasks);
     std::printf("\n%s\n\n| | cells crossed |", heading);
     for (const std::string& name : ours.contenders) std::printf(" %s: %s |", name.c_str(), columns);

@@ -110,12 +110,12 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
         surfaces_.reset();
-        prepared_.emplace(scene, float32_margin);
+        prepared_.emplace(scene, SurfacePass::sides_for(quality.surfaces));
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
     if (!same_transfer || !(shader_ || lighting_) || method_ != quality.method) prepare_light(scene, quality, same_cells);
-    prepare_surfaces(scene);
+    prepare_surfaces(scene, quality);
 }
 
 // The method's tables; without any where that fails, so that the next call makes them.
@@ -140,12 +140,16 @@ void GlRenderer::prepare_light(const Scene& scene, const Quality& quality, bool 
     method_ = quality.method;
 }
 
-void GlRenderer::prepare_surfaces(const Scene& scene) {
-    if (prepared_->scene().surfaces != scene.surfaces) {
-        prepared_->set_surfaces(scene.surfaces);
+void GlRenderer::prepare_surfaces(const Scene& scene, const Quality& quality) {
+    const SurfaceSides sides = SurfacePass::sides_for(quality.surfaces);
+    const PreparedSurfaces* before = prepared_->surfaces();
+    if (prepared_->scene().surfaces != scene.surfaces || (before && before->sides() != sides)) {
+        prepared_->set_surfaces(scene.surfaces, sides);
         surfaces_.reset();
     }
-    if (!surfaces_ && has_surfaces(scene)) surfaces_ = std::make_unique<SurfacePass>(*prepared_);
+    if (!has_surfaces(scene) || (surfaces_ && surfaces_->method() == quality.surfaces)) return;
+    surfaces_.reset();  // none behind a failure
+    surfaces_ = std::make_unique<SurfacePass>(*prepared_, quality.surfaces);
 }
 
 const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
@@ -193,7 +197,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
-    statistics.table_bytes = shader_ ? shader_->table_bytes() : 0;
+    statistics.table_bytes = (shader_ ? shader_->table_bytes() : 0) + (surfaces_ ? surfaces_->table_bytes() : 0);
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
     if (out) {  // the proof of the order is no part of the frame

@@ -32,7 +32,7 @@ public:
 
 private:
     void prepare_light(const Scene& scene, const Quality& quality, bool same_cells);
-    void prepare_surfaces(const Scene& scene);
+    void prepare_surfaces(const Scene& scene, const Quality& quality);
     ViewOrder find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
     const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
     void draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
