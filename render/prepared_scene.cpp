@@ -168,11 +168,11 @@ std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& uni
 
 }  // namespace
 
-PreparedScene::PreparedScene(Scene scene)
+PreparedScene::PreparedScene(Scene scene, const SurfaceSides& sides)
     : scene_(std::move(scene)), units_(find_units(scene_)), sorter_(*scene_.mesh),
       bins_(find_bins(main_field(scene_, units_))),
       opacity_bins_(scene_.opacity_field ? find_bins(opacity_field(scene_, units_)) : std::vector<BinRange>{}) {
-    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_);
+    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, sides);
     find_visible_cells();
 }
 
@@ -199,13 +199,13 @@ void PreparedScene::set_transfer(std::shared_ptr<const TransferFunction> transfe
     find_visible_cells();
 }
 
-void PreparedScene::set_surfaces(std::shared_ptr<const SurfaceScene> surfaces) {
+void PreparedScene::set_surfaces(std::shared_ptr<const SurfaceScene> surfaces, const SurfaceSides& sides) {
     Scene changed = scene_;
     changed.surfaces = std::move(surfaces);
     validate(changed);
-    surfaces_.reset();
+    const std::optional<PreparedSurfaces> before = std::exchange(surfaces_, std::nullopt);
     scene_ = std::move(changed);
-    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_);
+    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, sides, before ? &*before : nullptr);
     find_visible_cells();
 }
 

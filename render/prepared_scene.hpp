@@ -36,7 +36,9 @@ private:
 class PreparedScene {
 public:
     // Throws Error (data) when the field does not fit the mesh or has no finite value.
-    explicit PreparedScene(Scene scene);
+    //
+    // `sides`: of isosurfaces (PreparedSurfaces).
+    explicit PreparedScene(Scene scene, const SurfaceSides& sides = {});
 
     const Scene& scene() const { return scene_; }
     const SceneUnits& units() const { return units_; }
@@ -65,7 +67,7 @@ public:
     // of the field's range.
     void set_transfer(std::shared_ptr<const TransferFunction> transfer);
     // Other isosurfaces, or other shading or lights of them; null: none. Throws Error as `validate` does, and then nothing has changed.
-    void set_surfaces(std::shared_ptr<const SurfaceScene> surfaces);
+    void set_surfaces(std::shared_ptr<const SurfaceScene> surfaces, const SurfaceSides& sides = {});
 
     // The bins of a cell's lowest and highest scalar; low > high where one is not finite.
     struct BinRange {

@@ -111,14 +111,13 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
-        Scene medium = scene;  // surfaces are prepared apart: others of them leave the rest as it is
-        medium.surfaces = nullptr;
-        prepared_.emplace(std::move(medium));
+        surfaces_.reset();
+        prepared_.emplace(scene, SurfacePass::sides_for(quality.surfaces));
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
     if (!same_transfer || !(shader_ || lighting_) || method_ != quality.method) prepare_light(scene, quality, same_cells);
-    prepare_surfaces(scene);
+    prepare_surfaces(scene, quality);
 }
 
 // The method's tables; without any where that fails, so that the next call makes them.
@@ -143,17 +142,16 @@ void GlRenderer::prepare_light(const Scene& scene, const Quality& quality, bool 
     method_ = quality.method;
 }
 
-void GlRenderer::prepare_surfaces(const Scene& scene) {
-    if (!SurfacePass::is_needed(scene)) {
+void GlRenderer::prepare_surfaces(const Scene& scene, const Quality& quality) {
+    const SurfaceSides sides = SurfacePass::sides_for(quality.surfaces);
+    const PreparedSurfaces* before = prepared_->surfaces();
+    if (prepared_->scene().surfaces != scene.surfaces || (before && before->sides() != sides)) {
+        prepared_->set_surfaces(scene.surfaces, sides);
         surfaces_.reset();
-        return;
     }
-    if (!surfaces_ || !surfaces_->is_of(scene)) {
-        surfaces_.reset();  // none of another scene behind a failure
-        validate(scene);
-        surfaces_ = std::make_unique<SurfacePass>(scene, prepared_->units());
-    }
-    surfaces_->set_visible(scene.transfer, prepared_->visible());
+    if (!has_surfaces(scene) || (surfaces_ && surfaces_->method() == quality.surfaces)) return;
+    surfaces_.reset();  // none behind a failure
+    surfaces_ = std::make_unique<SurfacePass>(*prepared_, quality.surfaces);
 }
 
 const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
@@ -170,7 +168,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     validate(camera, "camera");
     validate(size, "size");
     prepare(scene, quality);
-    const bool sorted = needs_order();
+    const bool sorted = !prepared_->only_opaque_surfaces();
     if (!target_.is(size, quality.target, !sorted)) target_ = Target(size, quality.target, !sorted);
     statistics.ms.plan = total.ms();
 
@@ -180,7 +178,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.ms.sort = sort.ms();
 
     const Stopwatch transform;
-    const CellStream cells(*prepared_, camera, size, surfaces_ ? surfaces_->drawn() : std::span<const std::uint8_t>{});
+    const CellStream cells(*prepared_, camera, size);
     std::optional<DepthWindow> window;
     windows_.reset();
     if (DepthWindow::is_needed(scene)) {
@@ -208,7 +206,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
-    statistics.table_bytes = shader_ ? shader_->table_bytes() : 0;
+    statistics.table_bytes = (shader_ ? shader_->table_bytes() : 0) + (surfaces_ ? surfaces_->table_bytes() : 0);
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
     if (out) {  // the proof of the order is no part of the frame
@@ -224,10 +222,8 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 }
 
 ViewOrder GlRenderer::find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report) {
-    if (!surfaces_) return prepared_->order(camera, size, quality.order, &report);
-    if (!surfaces_->needs_order()) return surfaces_->any_order();
-    const PixelGrid pixels = pixel_grid(camera, size);
-    return prepared_->sorter().order(camera.viewpoint(), &report, quality.order, &pixels, surfaces_->drawn());
+    if (prepared_->only_opaque_surfaces()) return {prepared_->surfaces()->crossed(), {}};
+    return prepared_->order(camera, size, quality.order, &report);
 }
 
 void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
@@ -252,7 +248,7 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
 
 void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
     const NearnessFrame frame = cells.nearness_frame();
-    const bool medium = surfaces_->has_medium();
+    const bool medium = prepared_->has_medium();
     const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
                                       shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
                                       surfaces_->defines(frame.perspective) + (windows_ ? "#define WINDOW\n" : ""));
@@ -261,7 +257,7 @@ void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, 
     if (medium) shader_->bind(surfaces);
     surfaces.use();
     draw<SurfaceVertex>(surface_segments_, order, statistics, [&](const ViewOrder& chunk, SurfaceBatch& batch) {
-        cells.project(chunk, surfaces_->cells(), frame, batch);
+        cells.project(chunk, frame, batch);
     });
 }
 

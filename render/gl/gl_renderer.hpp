@@ -33,9 +33,8 @@ public:
 
 private:
     void prepare_light(const Scene& scene, const Quality& quality, bool same_cells);
-    void prepare_surfaces(const Scene& scene);
+    void prepare_surfaces(const Scene& scene, const Quality& quality);
     ViewOrder find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
-    bool needs_order() const { return !surfaces_ || surfaces_->needs_order(); }
     const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
     void draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
     void draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics);

@@ -2,8 +2,10 @@
 #include "render/gl/surface_pass.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <cstddef>
-#include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -15,19 +17,18 @@ namespace cellproj::gl {
 namespace {
 
 // Behind those of the methods (segment_shader.hpp).
-constexpr unsigned int surfaces_unit = 8, lights_unit = 9;
+constexpr unsigned int surfaces_unit = 8, lights_unit = 9, layers_unit = 11, first_unit = 12;
 
 void append(std::vector<float>& texels, const glm::dvec3& v, double last) {
     for (int axis = 0; axis < 3; ++axis) texels.push_back(static_cast<float>(v[axis]));
     texels.push_back(static_cast<float>(last));
 }
 
-Texture upload(const IsoSurfaces& surfaces, const std::vector<float>& thresholds, const SceneUnits& units) {
+Texture upload(const PreparedSurfaces& surfaces) {
     std::vector<float> texels;
-    for (std::size_t i = 0; i < thresholds.size(); ++i) {
-        const IsoSurface& surface = surfaces.surfaces()[i];
-        const double value = units.normalized(std::clamp(surface.value, units.scalar_low, units.scalar_high));
-        append(texels, {thresholds[i], value, surface.opacity}, 0.0);
+    for (std::size_t i = 0; i < surfaces.values().size(); ++i) {
+        const IsoSurface& surface = surfaces.scene().isosurfaces.surfaces()[i];
+        append(texels, {surfaces.thresholds()[i], surfaces.values()[i], surface.opacity}, 0.0);
         append(texels, seen_color(surface, true), 0.0);
         append(texels, seen_color(surface, false), 0.0);
     }
@@ -52,70 +53,81 @@ Texture upload(const std::vector<DirectionalLight>& lights) {
 
 }  // namespace
 
-bool SurfacePass::is_needed(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
-
 void SurfacePass::require_drawn(const Scene& scene, const Quality& quality) {
-    if (!is_needed(scene)) return;
-    if (light_at_vertices(quality.method) || quality.method.blending != Blending::once)
+    if (!has_surfaces(scene)) return;
+    if (!takes_surfaces(quality.method))
         throw Error({ErrorKind::option, "--method", "one of light per pixel, blended once, for a scene with isosurfaces",
                      to_string(quality.method), "use integral, exact or a table"});
 }
 
-SurfacePass::SurfacePass(const Scene& scene, const SceneUnits& units)
-    : scene_(scene),
-      cells_(scene, units),
-      opaque_(scene.surfaces->isosurfaces.opaque()),
-      two_fields_(scene.opacity_field != nullptr),
-      shading_(scene.surfaces->shading),
-      list_(upload(scene.surfaces->isosurfaces, cells_.thresholds(), units)),
-      lights_(upload(scene.surfaces->lighting.lights)) {}
-
-bool SurfacePass::is_of(const Scene& scene) const {
-    return scene_.surfaces == scene.surfaces && scene_.mesh == scene.mesh && scene_.field == scene.field &&
-           scene_.opacity_field == scene.opacity_field;
+SurfaceSides SurfacePass::sides_for(const SurfaceMethod& method) {
+    return {.margin = float32_margin, .table_size = method.kind == SurfaceMethodKind::exact ? 0 : method.size};
 }
 
-void SurfacePass::set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible) {
-    if (!drawn_.empty() && scene_.transfer == transfer) return;
-    scene_.transfer = std::move(transfer);
-    const std::vector<std::uint8_t>& crossed = cells_.crossed();
-    has_medium_ = std::ranges::find(visible, std::uint8_t{1}) != visible.end();
-    drawn_ = crossed;
-    if (has_medium_) {
-        for (std::size_t cell = 0; cell < drawn_.size(); ++cell) drawn_[cell] |= visible[cell];
+SurfacePass::SurfacePass(const PreparedScene& prepared, const SurfaceMethod& method)
+    : prepared_(prepared), method_(method), list_(upload(*prepared.surfaces())), lights_(upload(scene().lighting.lights)) {
+    assert(prepared.surfaces()->sides() == sides_for(method));
+    if (method.kind != SurfaceMethodKind::exact) upload_tables();
+}
+
+void SurfacePass::upload_tables() {
+    const SceneUnits& units = prepared_.units();
+    // A field of one value crosses nothing: any range will do.
+    const double high = units.scalar_high > units.scalar_low ? units.scalar_high : units.scalar_low + 1.0 + std::abs(units.scalar_low);
+    const IsoSurfaceTable table(scene().isosurfaces, units.scalar_low, high, method_.size);
+    std::vector<float> layers, first;
+    const auto grid = static_cast<std::size_t>(method_.size);
+    layers.reserve(4 * grid * grid);
+    first.reserve(4 * grid * grid);
+    for (std::size_t i = 0; i < table.texels().size(); ++i) {
+        const IsoSurfaceTable::Texel& texel = table.texels()[i];
+        const double front = static_cast<double>(i % grid), back = static_cast<double>(i / grid);
+        layers.insert(layers.end(), {texel.color[0], texel.color[1], texel.color[2], texel.opacity});
+        // Its isovalue rather than its share of the way from texel to texel: the way between the scalars at hand is another.
+        first.insert(first.end(), {static_cast<float>((front + texel.t * (back - front)) / table.intervals()), 0.0F, 0.0F, 0.0F});
     }
-    drawn_items_.clear();
-    for (std::size_t cell = 0; cell < drawn_.size() && !needs_order(); ++cell) {
-        if (drawn_[cell]) drawn_items_.push_back(static_cast<CellId>(cell));
-    }
+    layers_ = Texture::table_2d(method_.size, TableStorage::float32, layers);
+    first_ = Texture::table_2d(method_.size, TableStorage::float32, first);
 }
 
 std::string SurfacePass::defines(bool perspective) const {
-    return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (has_medium_ ? "#define MEDIUM\n" : "") +
-           (has_medium_ && two_fields_ ? "#define TWO_FIELDS\n" : "") +
-           (shading_ != Shading::unlit ? "#define LIT\n" : "") +
-           (shading_ == Shading::smooth ? "#define SMOOTH\n" : "") + (needs_order() ? "" : "#define NEAREST\n");
+    const bool medium = prepared_.has_medium(), two_fields = fields_read(prepared_.scene()) == FieldsRead::two;
+    const Shading shading = scene().shading;
+    return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (medium ? "#define MEDIUM\n" : "") +
+           (medium && two_fields ? "#define TWO_FIELDS\n" : "") + (shading != Shading::unlit ? "#define LIT\n" : "") +
+           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (prepared_.only_opaque_surfaces() ? "#define NEAREST\n" : "") +
+           (method_.kind != SurfaceMethodKind::exact ? "#define TABLE\n" : "") +
+           (method_.kind == SurfaceMethodKind::combined ? "#define COMBINED\n" : "");
 }
 
 // Sets what the variant reads, no more: a uniform that is not read is none.
 void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool windowed) const {
     const ScreenTransform& transform = cells.transform();
     const bool perspective = transform.perspective();
-    const bool lit = shading_ != Shading::unlit;
+    const bool lit = scene().shading != Shading::unlit, medium = prepared_.has_medium(), nearest = prepared_.only_opaque_surfaces();
     const auto set = [&](const char* name, double value) { program.set(name, static_cast<float>(value)); };
     if (perspective) set("inverse_far", frame.far);
-    if (perspective && (has_medium_ || windowed)) set("inverse_near", 1.0 / cells.near_depth());
-    if (!needs_order()) set("inverse_nearest", 1.0 / frame.nearest);
+    if (perspective && (medium || windowed)) set("inverse_near", 1.0 / cells.near_depth());
+    if (nearest) set("inverse_nearest", 1.0 / frame.nearest);
     // Of translucent surfaces alone, not cut, unlit or lit by one normal for all of a cell, no place is asked for but that of the eye.
-    if (has_medium_ || windowed || !needs_order() || shading_ == Shading::smooth || (perspective && lit)) {
+    const bool combined = method_.kind == SurfaceMethodKind::combined;
+    if (medium || windowed || nearest || combined || scene().shading == Shading::smooth || (perspective && lit)) {
         const glm::dvec2 center = transform.principal_point();
         program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
         set("pixels_per_unit", transform.pixels_per_unit());
     }
-    list_.bind(surfaces_unit);
+    if (method_.kind == SurfaceMethodKind::exact) {
+        list_.bind(surfaces_unit);
+    } else {
+        const SurfaceSides& sides = prepared_.surfaces()->sides();
+        set("table_scale", sides.texel_scale());
+        set("table_shift", sides.texel_shift());
+        layers_.bind(layers_unit);
+        first_.bind(first_unit);
+    }
     if (!lit) return;
 
-    const Lighting& lighting = scene_.surfaces->lighting;
+    const Lighting& lighting = scene().lighting;
     set("two_sided", lighting.two_sided ? 1.0 : 0.0);
     set("light_count", static_cast<double>(lighting.lights.size()));
     program.set("ambient", glm::vec4(lighting.ambient, lighting.exponent));

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Isosurfaces in OpenGL (shaders/surfaces.frag): what the scene's surfaces and lights are to the fragments, and how the frame is drawn
-// for them.
-//
-// "Model only what a scene requires": cells that no surface crosses are left out unless their medium is seen; without any medium
-// none is integrated; and opaque surfaces alone are drawn in any order, by a depth test.
+// Isosurfaces in OpenGL (shaders/surfaces.frag): what the scene's surfaces and lights are to the fragments. Which cells they cross, which
+// of them are seen and whether they want an order is known to PreparedScene.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <span>
+#include <cstddef>
 #include <string>
-#include <vector>
 
 #include "render/cell_stream.hpp"
 #include "render/gl/objects.hpp"
@@ -22,37 +16,33 @@ namespace cellproj::gl {
 
 class SurfacePass {
 public:
-    static bool is_needed(const Scene& scene);  // it has surfaces
     // Throws Error (option) for surfaces with a method of light at the vertices or blended by halves, which know no place in a
     // segment.
     static void require_drawn(const Scene& scene, const Quality& quality);
 
-    // A scene that needs it, and that `validate` passes.
-    SurfacePass(const Scene& scene, const SceneUnits& units);
+    // How the thresholds stand for a method (PreparedSurfaces).
+    static SurfaceSides sides_for(const SurfaceMethod& method);
 
-    // The same surfaces, mesh and fields.
-    bool is_of(const Scene& scene) const;
-    // Which cells are seen without surfaces (PreparedScene::visible of a transfer function), before anything is drawn.
-    void set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible);
+    // Of a scene that has_surfaces, as they are now, with the sides of the method; it must outlive this.
+    SurfacePass(const PreparedScene& prepared, const SurfaceMethod& method);
 
-    const SurfaceCells& cells() const { return cells_; }
-    bool has_medium() const { return has_medium_; }
-    bool needs_order() const { return has_medium_ || !opaque_; }
-    std::span<const std::uint8_t> drawn() const { return drawn_; }  // #T, not empty
-    ViewOrder any_order() const { return {drawn_items_, {}}; }      // of the cells drawn, when they need none
+    const SurfaceMethod& method() const { return method_; }
+    std::size_t table_bytes() const { return layers_.bytes() + first_.bytes(); }
 
+    // What is defined and bound follows the scene's transfer function of the moment.
     std::string defines(bool perspective) const;
     // `windowed`: the variant WINDOW.
     void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool windowed) const;
 
 private:
-    Scene scene_;  // its transfer function: the one that `drawn_` is of
-    SurfaceCells cells_;
-    bool opaque_, two_fields_, has_medium_ = false;
-    Shading shading_;
+    const SurfaceScene& scene() const { return prepared_.surfaces()->scene(); }
+
+    void upload_tables();
+
+    const PreparedScene& prepared_;
+    SurfaceMethod method_;
     Texture list_, lights_;
-    std::vector<std::uint8_t> drawn_;
-    std::vector<CellId> drawn_items_;
+    Texture layers_, first_;  // over (s_f, s_b), of methods that take a table
 };
 
 }  // namespace cellproj::gl
