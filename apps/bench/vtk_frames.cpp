@@ -88,12 +88,11 @@ public:
         window_->AddRenderer(renderer_);
     }
 
-    Statistics draw(const Camera& camera) override {
+    void draw(const Camera& camera) override {
         set_vtk_view(*renderer_->GetActiveCamera(), camera);
         renderer_->ResetCameraClippingRange();
         window_->Render();
         window_->WaitForCompletion();
-        return {};
     }
 
     Image picture() const override {

@@ -31,7 +31,8 @@ public:
 
     // What is defined and bound follows the scene's transfer function of the moment.
     std::string defines(bool perspective) const;
-    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame) const;
+    // `windowed`: the variant WINDOW.
+    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool windowed) const;
 
 private:
     const SurfaceScene& scene() const { return prepared_.surfaces()->scene(); }

@@ -9,6 +9,7 @@
 //   LIT       surfaces are shaded by the gradient, one for the cell or
 //   SMOOTH    linear in it
 //   NEAREST   all are opaque and there is no medium: the first crossing, for the depth test
+//   WINDOW    of each ray only a part is kept
 in vec3 v_ridges;
 flat in vec4 v_faces[8];
 flat in vec4 v_scalars;
@@ -28,6 +29,11 @@ uniform float pixels_per_unit; // perspective: at depth 1
 uniform float inverse_near;    // perspective: 1 / depth of the near plane
 uniform float inverse_nearest; // 1 / the largest nearness
 layout(binding = 8) uniform samplerBuffer surfaces;  // three each: threshold, isovalue, opacity; front colour; back colour
+
+#ifdef WINDOW
+layout(binding = 10) uniform samplerBuffer windows;  // of the pixels: what is kept of their rays, nearest and farthest nearness
+uniform float window_width;                          // pixels in a row
+#endif
 
 #ifdef TABLE
 layout(binding = 11) uniform sampler2D layer_table;  // texels (s_front, s_back): all surfaces between, unlit; associated colour, opacity
@@ -142,6 +148,22 @@ void main() {
 #endif
     depth_difference = min(depth_difference, abs(v_cell.z));
     float segment = depth_difference * ray;
+    vec2 kept = vec2(0.0, 1.0);  // of the way from front to back
+#ifdef WINDOW
+    vec2 window = texelFetch(windows, int(gl_FragCoord.x) + int(window_width) * int(gl_FragCoord.y)).xy;
+    if (window.x <= window.y || window.x <= back.x || (window.y >= front.x && lead == 0.0)) discard;
+    vec2 cuts = clamp((front.x - window) / max(front.x - back.x, 1e-30), 0.0, 1.0);
+#ifdef PERSPECTIVE
+    cuts = clamp(cuts * back_inverse / max(window + inverse_far, 1e-30), 0.0, 1.0);
+    if (window.x >= front.x && lead > 0.0)
+        lead = max(1.0 / max(front_inverse, window.y + inverse_far) - (window.x < 1e30 ? 1.0 / (window.x + inverse_far) : 0.0), 0.0) * ray;
+#endif
+    if (window.x < front.x) {
+        kept.x = cuts.x;
+        lead = 0.0;
+    }
+    if (window.y > back.x) kept.y = window.y < front.x ? cuts.y : 0.0;
+#endif
     // The field at both ends, in the cell's own range beyond which slivers extrapolate. `front` and `back` tell the sides of surfaces.
     vec3 place_in_front = place_at(offset, front_depth), place_behind = place_at(offset, front_depth + depth_difference);
     vec4 at_front = v_map + v_slopes * place_in_front, at_back = v_map + v_slopes * place_behind;
@@ -164,14 +186,20 @@ void main() {
     precise vec2 place = vec2(front.y, back.y) * table_scale + table_shift;  // both cells of a face: the same
     ivec2 texel = ivec2(floor(clamp(place, 0.0, table_scale)));
     vec4 layers = texelFetch(layer_table, texel, 0);
+    float value = clamp(texelFetch(first_table, texel, 0).x, min(s.x, s.y), max(s.x, s.y));
+    float share = s.x != s.y ? clamp((value - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
+    vec2 s_kept = vec2(mix(s.x, s.y, kept.x), mix(s.x, s.y, kept.y));
     bool crossed = layers.a > 0.0;
+#ifdef WINDOW
+    crossed = crossed && share >= kept.x && share <= kept.y;
+    if (!crossed) layers = vec4(0.0);
+#endif
 #ifdef NEAREST
     if (!crossed) discard;
 #endif
-    float value = clamp(texelFetch(first_table, texel, 0).x, min(s.x, s.y), max(s.x, s.y));
-    float share = crossed && s.x != s.y ? clamp((value - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
     // The part at the front of a layer of opacity a at share t has (1 - t)a; the part at the back makes the rest of it.
-    vec4 at_face = (1.0 - share) * layers, behind = layers * (share / max(1.0 - at_face.a, 1e-30));
+    float t = clamp((share - kept.x) / max(kept.y - kept.x, 1e-30), 0.0, 1.0);
+    vec4 at_face = (1.0 - t) * layers, behind = layers * (t / max(1.0 - at_face.a, 1e-30));
 #if defined(SMOOTH) && defined(COMBINED)
     at_face.rgb *= reflected(at_front.xyz, to_eye);
     behind.rgb *= reflected(at_back.xyz, to_eye);
@@ -189,9 +217,10 @@ void main() {
     light = at_face;
 #ifdef MEDIUM
 #ifdef TWO_FIELDS
-    light += (1.0 - light.a) * light_of_segment(vec2(s.x, s_opacity.x), vec2(s.y, s_opacity.y), segment + lead);
+    vec2 o_kept = vec2(mix(s_opacity.x, s_opacity.y, kept.x), mix(s_opacity.x, s_opacity.y, kept.y));
+    light += (1.0 - light.a) * light_of_segment(vec2(s_kept.x, o_kept.x), vec2(s_kept.y, o_kept.y), (kept.y - kept.x) * segment + lead);
 #else
-    light += (1.0 - light.a) * light_of_segment(s.x, s.y, segment + lead);
+    light += (1.0 - light.a) * light_of_segment(s_kept.x, s_kept.y, (kept.y - kept.x) * segment + lead);
 #endif
 #endif
     light += (1.0 - light.a) * behind;
@@ -199,19 +228,21 @@ void main() {
     light = vec4(0.0);
 #ifdef MEDIUM
     // Once, or twice where there are surfaces: a loop, as code that is written twice is run twice.
-    float s_at = s.x, s_to = crossed ? value : s.y, part = share * segment + lead;
+    float from = kept.x, to = crossed ? share : kept.y, s_at = s_kept.x, s_to = crossed ? value : s_kept.y;
     for (bool before = true;;) {
+        float part = (to - from) * segment + lead;
 #ifdef TWO_FIELDS
-        float from = before ? 0.0 : share, to = before ? share : 1.0;
         light += (1.0 - light.a) * light_of_segment(vec2(s_at, mix(s_opacity.x, s_opacity.y, from)), vec2(s_to, mix(s_opacity.x, s_opacity.y, to)), part);
 #else
         light += (1.0 - light.a) * light_of_segment(s_at, s_to, part);
 #endif
         if (before) light += (1.0 - light.a) * layers;
         if (!before || !crossed || light.a >= 1.0) break;
+        from = to;
+        to = kept.y;
         s_at = s_to;
-        s_to = s.y;
-        part = (1.0 - share) * segment;
+        s_to = s_kept.y;
+        lead = 0.0;
         before = false;
     }
 #else
@@ -234,14 +265,26 @@ void main() {
 #if defined(LIT) && !defined(SMOOTH)
     vec3 share_of_color = reflected(v_map.xyz, to_eye);
 #endif
-    float at = 0.0, s_at = s.x;  // where the last crossing was, as a share of the segment, and the scalar there
+    float at = kept.x, s_at = mix(s.x, s.y, kept.x);  // where the last crossing was, as a share of the segment, and the scalar there
     for (;;) {
         bool crossed = k != end;
         int surface = 3 * max(rising ? k : k - 1, 0);
         vec4 about = texelFetch(surfaces, surface);
-        float share = crossed && s.x != s.y ? clamp((about.y - s.x) / (s.y - s.x), at, 1.0) : 1.0;
+        float share = crossed && s.x != s.y ? clamp((about.y - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
+#ifdef WINDOW
+        if (crossed && share < kept.x) {
+            k += rising ? 1 : -1;
+            continue;
+        }
+        crossed = crossed && share <= kept.y;
+        share = min(share, kept.y);
+#ifdef NEAREST
+        if (!crossed) discard;
+#endif
+#endif
+        share = max(share, at);
 #ifdef MEDIUM
-        float s_here = crossed ? clamp(about.y, min(s.x, s.y), max(s.x, s.y)) : s.y;
+        float s_here = crossed ? clamp(about.y, min(s.x, s.y), max(s.x, s.y)) : mix(s.x, s.y, share);
         float part = (share - at) * segment + lead;
 #ifdef TWO_FIELDS
         vec2 from = vec2(s_at, mix(s_opacity.x, s_opacity.y, at)), to = vec2(s_here, mix(s_opacity.x, s_opacity.y, share));
