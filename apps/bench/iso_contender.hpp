@@ -38,7 +38,8 @@ public:
     virtual std::size_t triangles() const { return 0; }
 };
 
-std::vector<std::string> iso_contender_names();  // "cpu", "gl" and, built with VTK, "vtk"
+// "cpu", "gl", "gl-table" and "gl-combined" (of 512² texels) and, built with VTK, "vtk".
+std::vector<std::string> iso_contender_names();
 std::unique_ptr<IsoContender> make_iso_contender(const std::string& name, ImageSize size);
 
 // VTK's contour filter and its polygons, as a user with the documentation would set them: normals from the filter, translucent ones by

@@ -110,7 +110,7 @@ void serve(const std::string& contender_name, const std::string& scene_name, Ima
 
 struct Options {
     std::string scene = "bluntfin";
-    std::vector<std::string> contenders = iso_contender_names();
+    std::vector<std::string> contenders;  // all but gl's tables, unless told otherwise
     std::vector<int> values{1, 2, 10, 100, 1000};
     int size = 512, frames = 3, rounds = 3, most_translucent_vtk = 10, most_opaque_vtk = 10;
 };
@@ -270,6 +270,8 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);  // a contender that dies is told in its row
     Options options;
+    for (const std::string& name : iso_contender_names())
+        if (!name.starts_with("gl-")) options.contenders.push_back(name);
     CLI::App app{description, "cellproj_isosurfaces"};
     app.add_option("--scene", options.scene, "bluntfin, grid:N (N points along an edge), delaunay:N (N points)")->capture_default_str();
     app.add_option("--contenders", options.contenders)->delimiter(',')->check(CLI::IsMember(iso_contender_names()));

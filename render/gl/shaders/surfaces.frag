@@ -186,14 +186,20 @@ void main() {
     precise vec2 place = vec2(front.y, back.y) * table_scale + table_shift;  // both cells of a face: the same
     ivec2 texel = ivec2(floor(clamp(place, 0.0, table_scale)));
     vec4 layers = texelFetch(layer_table, texel, 0);
+    float value = clamp(texelFetch(first_table, texel, 0).x, min(s.x, s.y), max(s.x, s.y));
+    float share = s.x != s.y ? clamp((value - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
+    vec2 s_kept = vec2(mix(s.x, s.y, kept.x), mix(s.x, s.y, kept.y));
     bool crossed = layers.a > 0.0;
+#ifdef WINDOW
+    crossed = crossed && share >= kept.x && share <= kept.y;
+    if (!crossed) layers = vec4(0.0);
+#endif
 #ifdef NEAREST
     if (!crossed) discard;
 #endif
-    float value = clamp(texelFetch(first_table, texel, 0).x, min(s.x, s.y), max(s.x, s.y));
-    float share = crossed && s.x != s.y ? clamp((value - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
     // The part at the front of a layer of opacity a at share t has (1 - t)a; the part at the back makes the rest of it.
-    vec4 at_face = (1.0 - share) * layers, behind = layers * (share / max(1.0 - at_face.a, 1e-30));
+    float t = clamp((share - kept.x) / max(kept.y - kept.x, 1e-30), 0.0, 1.0);
+    vec4 at_face = (1.0 - t) * layers, behind = layers * (t / max(1.0 - at_face.a, 1e-30));
 #if defined(SMOOTH) && defined(COMBINED)
     at_face.rgb *= reflected(at_front.xyz, to_eye);
     behind.rgb *= reflected(at_back.xyz, to_eye);
@@ -211,9 +217,10 @@ void main() {
     light = at_face;
 #ifdef MEDIUM
 #ifdef TWO_FIELDS
-    light += (1.0 - light.a) * light_of_segment(vec2(s.x, s_opacity.x), vec2(s.y, s_opacity.y), segment + lead);
+    vec2 o_kept = vec2(mix(s_opacity.x, s_opacity.y, kept.x), mix(s_opacity.x, s_opacity.y, kept.y));
+    light += (1.0 - light.a) * light_of_segment(vec2(s_kept.x, o_kept.x), vec2(s_kept.y, o_kept.y), (kept.y - kept.x) * segment + lead);
 #else
-    light += (1.0 - light.a) * light_of_segment(s.x, s.y, segment + lead);
+    light += (1.0 - light.a) * light_of_segment(s_kept.x, s_kept.y, (kept.y - kept.x) * segment + lead);
 #endif
 #endif
     light += (1.0 - light.a) * behind;
@@ -221,19 +228,21 @@ void main() {
     light = vec4(0.0);
 #ifdef MEDIUM
     // Once, or twice where there are surfaces: a loop, as code that is written twice is run twice.
-    float s_at = s.x, s_to = crossed ? value : s.y, part = share * segment + lead;
+    float from = kept.x, to = crossed ? share : kept.y, s_at = s_kept.x, s_to = crossed ? value : s_kept.y;
     for (bool before = true;;) {
+        float part = (to - from) * segment + lead;
 #ifdef TWO_FIELDS
-        float from = before ? 0.0 : share, to = before ? share : 1.0;
         light += (1.0 - light.a) * light_of_segment(vec2(s_at, mix(s_opacity.x, s_opacity.y, from)), vec2(s_to, mix(s_opacity.x, s_opacity.y, to)), part);
 #else
         light += (1.0 - light.a) * light_of_segment(s_at, s_to, part);
 #endif
         if (before) light += (1.0 - light.a) * layers;
         if (!before || !crossed || light.a >= 1.0) break;
+        from = to;
+        to = kept.y;
         s_at = s_to;
-        s_to = s.y;
-        part = (1.0 - share) * segment;
+        s_to = s_kept.y;
+        lead = 0.0;
         before = false;
     }
 #else
