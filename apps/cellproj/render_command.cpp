@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "mesh/error.hpp"
 #include "progress.hpp"
+#include "render/depth_window.hpp"
 #include "render/output_file.hpp"
 #include "render/renderer.hpp"
 #include "render/trade_choice.hpp"
@@ -150,7 +151,10 @@ Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene,
                         double max_error, const Quality& base, double& measured) {
     ChoiceOptions how{.base = base};
     how.base.check_rays = 0;  // the chosen one's order is proved once
-    how.draws = [backend, fields = fields_read(scene)](const Quality& quality) { return draws(backend, quality, fields); };
+    const bool wants_pixels = has_surfaces(scene) || DepthWindow::is_needed(scene);  // light at vertices knows no place in a segment
+    how.draws = [backend, wants_pixels, fields = fields_read(scene)](const Quality& quality) {
+        return draws(backend, quality, fields) && !(wants_pixels && light_at_vertices(quality.method));
+    };
     const QualityChoice choice = [&] {
         const Progress progress("choosing a method");
         return choose_quality(renderer, scene, cameras.front(), size, max_error, how);
