@@ -19,7 +19,6 @@ namespace cellproj {
 
 namespace {
 
-using Range = oneapi::tbb::blocked_range<int>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Rows that one task draws: enough that each triangle is looked at a few times only.
@@ -36,21 +35,21 @@ void cut(DepthInterval& interval, double offset, double slope) {
 class EyeRays {
 public:
     EyeRays(const Camera& camera, ImageSize size, double unit)
-        : transform_(relative_transform(camera, size, unit)), eye_(camera.eye), unit_(unit) {}
+        : transform_(relative_transform(camera, size, unit)), eye_(camera.eye), unit_(unit), units_per_pixel_(1.0 / transform_.pixels_per_unit()) {}
 
     bool perspective() const { return transform_.perspective(); }
     glm::dvec3 place(const glm::dvec3& point) const { return transform_.to_eye((point - eye_) / unit_); }
     glm::dvec3 direction(const glm::dvec3& v) const { return transform_.to_eye(v); }
     glm::dvec2 screen(const glm::dvec3& place) const { return transform_.to_screen(place); }
     glm::dvec2 slope(int x, int y) const {
-        return (glm::dvec2(x + 0.5, y + 0.5) - transform_.principal_point()) / transform_.pixels_per_unit();
+        return (glm::dvec2(x + 0.5, y + 0.5) - transform_.principal_point()) * units_per_pixel_;
     }
     glm::dvec3 to_eye(int x, int y) const { return -transform_.ray({x + 0.5, y + 0.5}).direction; }  // in the axes of the mesh
 
 private:
     ScreenTransform transform_;
     glm::dvec3 eye_;
-    double unit_;
+    double unit_, units_per_pixel_;
 };
 
 // A half space in eye space: its side at z·(u, v, 1), or at (u, v, z), is offset + slope·z.
@@ -93,6 +92,7 @@ PixelBox box_of(const EyeTriangle& triangle, const EyeRays& rays, ImageSize size
         low = glm::min(low, p);
         high = glm::max(high, p);
     }
+    if (!std::isfinite(low.x + low.y + high.x + high.y)) return whole;  // beyond float64
     // Rounding of a place on the screen, generously: what covers is decided pixel by pixel.
     const double margin = 1e-3;
     const auto first = [&](double v) { return static_cast<int>(std::clamp(std::ceil(v - 0.5 - margin), 0.0, 16384.0)); };
@@ -100,22 +100,36 @@ PixelBox box_of(const EyeTriangle& triangle, const EyeRays& rays, ImageSize size
     return {first(low.x), first(low.y), last(high.x, size.width), last(high.y, size.height)};
 }
 
+// Those of all bodies, one after the other; what no pixel can see has an empty box.
 std::vector<EyeTriangle> triangles_of(const BodyScene& scene, const EyeRays& rays, ImageSize size) {
     std::vector<EyeTriangle> triangles;
     for (std::uint32_t b = 0; b < scene.bodies.size(); ++b) {
         const Body& body = scene.bodies[b];
-        std::vector<glm::dvec3> places(body.points.size());
-        for (std::size_t i = 0; i < places.size(); ++i) places[i] = rays.place(body.points[i]);
-        for (std::uint32_t number = 0; number < body.triangles.size(); ++number) {
-            const auto& ids = body.triangles[number];
-            EyeTriangle t{{places[ids[0]], places[ids[1]], places[ids[2]]}, {}, {}, b, number};
-            t.box = box_of(t, rays, size);
-            if (t.box.left > t.box.right || t.box.top > t.box.bottom) continue;
-            for (std::size_t i = 0; i < 3; ++i) t.edges[i] = glm::cross(t.corners[(i + 1) % 3], t.corners[(i + 2) % 3]);
-            triangles.push_back(t);
-        }
+        const std::size_t first = triangles.size();
+        triangles.resize(first + body.triangles.size());
+        oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, body.triangles.size(), 1024), [&](const auto& range) {
+            for (std::size_t number = range.begin(); number != range.end(); ++number) {
+                const auto& ids = body.triangles[number];
+                EyeTriangle& t = triangles[first + number];
+                for (std::size_t i = 0; i < 3; ++i) t.corners[i] = rays.place(body.points[ids[i]]);
+                for (std::size_t i = 0; i < 3; ++i) t.edges[i] = glm::cross(t.corners[(i + 1) % 3], t.corners[(i + 2) % 3]);
+                t.box = box_of(t, rays, size);
+                t.body = b;
+                t.number = static_cast<std::uint32_t>(number);
+            }
+        });
     }
     return triangles;
+}
+
+// The triangles that may cover pixels of each band, in their order.
+std::vector<std::vector<const EyeTriangle*>> by_bands(const std::vector<EyeTriangle>& triangles, int bands) {
+    std::vector<std::vector<const EyeTriangle*>> result(static_cast<std::size_t>(bands));
+    for (const EyeTriangle& t : triangles) {
+        if (t.box.left > t.box.right || t.box.top > t.box.bottom) continue;
+        for (int band = t.box.top / band_rows; band <= t.box.bottom / band_rows; ++band) result[static_cast<std::size_t>(band)].push_back(&t);
+    }
+    return result;
 }
 
 // The depth at which the ray meets it; infinite where it does not, or only edge-on.
@@ -164,24 +178,25 @@ DepthWindow::DepthWindow(const Scene& scene, const Camera& camera, ImageSize siz
     pixels_.assign(width * static_cast<std::size_t>(size.height), {perspective ? 0.0 : -infinity, infinity});
 
     const int bands = (size.height + band_rows - 1) / band_rows;
-    oneapi::tbb::parallel_for(Range(0, bands, 1), [&](const Range& range) {
-        const int top = range.begin() * band_rows, bottom = std::min(range.end() * band_rows, size.height) - 1;
+    const auto of_band = by_bands(triangles, bands);
+    oneapi::tbb::parallel_for(0, bands, [&](int band) {
+        const int top = band * band_rows, bottom = std::min(top + band_rows, size.height) - 1;
         const auto at = [&](int x, int y) { return static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x); };
         for (int y = top; y <= bottom && !planes.empty(); ++y)
             for (int x = 0; x < size.width; ++x)
                 for (const EyePlane& plane : planes) plane.cut(pixels_[at(x, y)], rays.slope(x, y), perspective);
-        if (triangles.empty()) return;
+        if (of_band[static_cast<std::size_t>(band)].empty()) return;
         const std::size_t first = at(0, top);
         std::vector<double> depth(at(0, bottom + 1) - first, infinity);
         std::vector<const EyeTriangle*> nearest(depth.size(), nullptr);
-        for (const EyeTriangle& t : triangles)
-            for (int y = std::max(top, t.box.top); y <= std::min(bottom, t.box.bottom); ++y)
-                for (int x = t.box.left; x <= t.box.right; ++x) {
-                    const double z = depth_on(t, rays.slope(x, y), perspective);
+        for (const EyeTriangle* t : of_band[static_cast<std::size_t>(band)])
+            for (int y = std::max(top, t->box.top); y <= std::min(bottom, t->box.bottom); ++y)
+                for (int x = t->box.left; x <= t->box.right; ++x) {
+                    const double z = depth_on(*t, rays.slope(x, y), perspective);
                     const std::size_t i = at(x, y) - first;
                     if (!(z < depth[i])) continue;
                     depth[i] = z;
-                    nearest[i] = &t;
+                    nearest[i] = t;
                 }
         for (int y = top; y <= bottom; ++y)
             for (int x = 0; x < size.width; ++x) {
