@@ -157,6 +157,23 @@ TEST_P(BodiesOfEither, AreNotClipped) {
     EXPECT_EQ(max_difference(cpu_backend().render(cut, camera, size), gl_backend().render(cut, camera, size)), 0.0);
 }
 
+// The mesh behind the eye or beside the picture: what is left of the scene is drawn.
+TEST_P(BodiesOfEither, AreSeenWhereTheMeshIsNot) {
+    const ImageSize size{20, 20};
+    Camera camera = view_of_unit_cube(GetParam());
+    const glm::dvec3 away = 20.0 * (camera.eye - camera.center);
+    for (const glm::dvec3& move : {away, 20.0 * glm::cross(away, camera.up)}) {
+        Camera moved = camera;
+        moved.eye += move;
+        moved.center += move;
+        if (move == away) moved.center = moved.eye + 0.05 * away;  // looks away from it
+        const Scene scene = with_bodies(scene_of(grid_mesh(3), linear, ramp()), {sphere(moved.center, 0.5, 12, green)}, unlit);
+        const auto truths = Reference(scene).picture(moved, size);
+        EXPECT_TRUE(std::ranges::any_of(truths, [](const PixelTruth& truth) { return truth.light.opacity == 1.0; }));
+        for (Renderer* renderer : {&cpu_backend(), &gl_backend()}) EXPECT_LT(largest(compare(renderer->render(scene, moved, size), truths)), 1e-6);
+    }
+}
+
 // Triangles around the eye, of no area, and nearer than the near plane; pixels and depths of random ones agree with the judge.
 TEST_P(BodiesOfEither, OfRandomTriangles) {
     const ImageSize size{20, 20};
