@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "mesh/error.hpp"
 #include "progress.hpp"
+#include "render/depth_window.hpp"
 #include "render/output_file.hpp"
 #include "render/renderer.hpp"
 #include "render/trade_choice.hpp"
@@ -152,7 +153,8 @@ Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene,
     ChoiceOptions how{.base = base};
     how.base.check_rays = 0;  // the chosen one's order is proved once
     how.draws = [backend, &scene](const Quality& quality) {
-        return draws(backend, quality, fields_read(scene)) && (!has_surfaces(scene) || takes_surfaces(quality.method));
+        return draws(backend, quality, fields_read(scene)) && (!has_surfaces(scene) || takes_surfaces(quality.method)) &&
+               !(DepthWindow::is_needed(scene) && light_at_vertices(quality.method));  // which knows no place in a segment
     };
     const QualityChoice choice = [&] {
         const Progress progress("choosing a method");
