@@ -24,8 +24,8 @@ constexpr std::size_t cells_per_chunk = 16384;
 constexpr double longest_segment = 2.0;
 
 // The context must be current before the members that are OpenGL objects are made.
-OsmesaContext current(OsmesaContext context) {
-    context.make_current();
+std::unique_ptr<Context> current(std::unique_ptr<Context> context) {
+    context->make_current();
     return context;
 }
 
@@ -90,21 +90,27 @@ void draw(TriangleStream& stream, const ViewOrder& order, Statistics& statistics
 
 }  // namespace
 
-GlRenderer::GlRenderer(OsmesaContext context)
+GlRenderer::GlRenderer(std::unique_ptr<Context> context)
     : context_(current(std::move(context))),
       segments_(make_triangle_stream<StreamVertex>()),
       two_field_segments_(make_triangle_stream<TwoFieldVertex>()),
       lit_(make_triangle_stream<LitVertex>()),
-      surface_segments_(make_triangle_stream<SurfaceVertex>()) {}
+      surface_segments_(make_triangle_stream<SurfaceVertex>()) {
+    context_->release();
+}
 
-// The OpenGL objects below are deleted in their own context, whatever is current now.
-GlRenderer::~GlRenderer() { context_.make_current(); }
+// The OpenGL objects below are deleted in their own context, which goes last.
+GlRenderer::~GlRenderer() { context_->make_current(); }
+
+void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
+    const CurrentContext current(*context_);
+    prepare_here(scene, quality);
+}
 
 // Brings what depends on the scene and the quality up to date; usually there is nothing to do.
-void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
+void GlRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     require_drawn(Backend::gl_osmesa, quality, fields_read(scene));
     SurfacePass::require_drawn(scene, quality);
-    context_.make_current();
     const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field &&
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
@@ -167,7 +173,8 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     const Stopwatch total;
     validate(camera, "camera");
     validate(size, "size");
-    prepare(scene, quality);
+    const CurrentContext current(*context_);
+    prepare_here(scene, quality);
     const bool sorted = needs_order();
     if (!target_.is(size, quality.target, !sorted)) target_ = Target(size, quality.target, !sorted);
     statistics.ms.plan = total.ms();
@@ -200,7 +207,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
     statistics.table_bytes = shader_ ? shader_->table_bytes() : 0;
-    statistics.backend = "gl_osmesa";
+    statistics.backend = context_->name();
     statistics.backend_version = driver_version();
     if (out) {  // the proof of the order is no part of the frame
         if (sorted) {

@@ -11,8 +11,8 @@
 
 #include "classify/vertex_light.hpp"
 #include "render/cell_stream.hpp"
+#include "render/gl/context.hpp"
 #include "render/gl/objects.hpp"
-#include "render/gl/osmesa_context.hpp"
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/surface_pass.hpp"
 #include "render/gl/triangle_stream.hpp"
@@ -23,7 +23,7 @@ namespace cellproj::gl {
 
 class GlRenderer : public Renderer {
 public:
-    explicit GlRenderer(OsmesaContext context);
+    explicit GlRenderer(std::unique_ptr<Context> context);
     ~GlRenderer() override;
 
     void prepare(const Scene& scene, const Quality& quality) override;
@@ -31,6 +31,7 @@ public:
                  Statistics* statistics) override;
 
 private:
+    void prepare_here(const Scene& scene, const Quality& quality);
     void prepare_light(const Scene& scene, const Quality& quality, bool same_cells);
     void prepare_surfaces(const Scene& scene);
     ViewOrder find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
@@ -40,7 +41,7 @@ private:
     void draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
     void draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
 
-    OsmesaContext context_;
+    std::unique_ptr<Context> context_;  // current during calls only
     std::map<std::string, Program> programs_;  // by their text
     TriangleStream segments_, two_field_segments_, lit_, surface_segments_;
     Target target_;
