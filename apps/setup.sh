@@ -14,8 +14,8 @@ packages=(
     libcgal-dev libtet1.5-dev
     # vectors, threads, SIMD for the instruction sets of the machine
     libglm-dev libtbb-dev libhwy-dev
-    # OpenGL without a screen: OSMesa at build and at run time, glad to generate its loader
-    libosmesa6-dev libosmesa6 python3-glad
+    # OpenGL without a screen: OSMesa and EGL at build and at run time, glad to generate its loader
+    libosmesa6-dev libosmesa6 libegl-dev libegl1 libegl-mesa0 python3-glad
     # pictures and the text in them, JSON, the command line
     libpng-dev libopenexr-dev libfreetype-dev fonts-dejavu-core nlohmann-json3-dev libcli11-dev
     # tests and benchmarks; clang for the sanitizers and libFuzzer

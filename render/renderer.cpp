@@ -5,7 +5,9 @@
 
 #include "mesh/error.hpp"
 #include "render/cpu/cpu_renderer.hpp"
+#include "render/gl/egl_context.hpp"
 #include "render/gl/gl_renderer.hpp"
+#include "render/gl/osmesa_context.hpp"
 
 namespace cellproj {
 
@@ -24,7 +26,7 @@ std::optional<Error> refusal(Backend backend, const Quality& quality, FieldsRead
         if (backend == Backend::cpu)
             return instead("--opacity-field", "colour and opacity from one field for the CPU backend", "another field", use_gl);
     }
-    if (backend == Backend::gl_osmesa) {
+    if (backend != Backend::cpu) {
         if (!quality.order_per_pixel) return std::nullopt;
         return instead("--order", "an order of cells for the OpenGL backend", "pixel", "use the CPU backend (--backend cpu)");
     }
@@ -45,16 +47,21 @@ void require_drawn(Backend backend, const Quality& quality, FieldsRead fields) {
     if (const auto error = refusal(backend, quality, fields)) throw *error;
 }
 
-Backend usual_backend(const Quality& quality, FieldsRead fields) {
+Backend usual_backend(const Quality& quality, FieldsRead fields, const Gpu& gpu) {
+    if (gpu.found && draws(Backend::gl_egl, quality, fields)) return Backend::gl_egl;
     return quality.order_per_pixel || draws(Backend::cpu, quality, fields) ? Backend::cpu : Backend::gl_osmesa;
 }
+
+Gpu find_gpu(const RendererOptions& options) { return gl::find_gpu(options.egl_library); }
 
 std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options) {
     switch (backend) {
         case Backend::gl_osmesa:
-            return std::make_unique<gl::GlRenderer>(gl::OsmesaContext(options.osmesa_library));
+            return std::make_unique<gl::GlRenderer>(std::make_unique<gl::OsmesaContext>(options.osmesa_library), options.rules);
+        case Backend::gl_egl:
+            return std::make_unique<gl::GlRenderer>(std::make_unique<gl::EglContext>(options.egl_library), options.rules);
         case Backend::cpu:
-            return cpu::make_renderer(options.threads);
+            return cpu::make_renderer(options.threads, options.rules);
     }
     return nullptr;
 }

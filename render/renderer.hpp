@@ -10,7 +10,9 @@
 
 #include "classify/method.hpp"
 #include "project/camera.hpp"
+#include "render/gpu.hpp"
 #include "render/image.hpp"
+#include "render/plan_rules.hpp"
 #include "render/scene.hpp"
 #include "render/statistics.hpp"
 #include "render/surface_method.hpp"
@@ -49,20 +51,27 @@ public:
 
 enum class Backend {
     gl_osmesa,  // OpenGL 4.5 core on the CPU, off screen: needs no display and no GPU; draws every method and target
+    gl_egl,     // the same through EGL: on a GPU where there is one, else on the CPU
     cpu         // native, the faster one without a GPU; light for each pixel, rgba32f
 };
 
 struct RendererOptions {
     std::string osmesa_library = "libOSMesa.so.8";  // name or path, loaded when the renderer is made
+    std::string egl_library = "libEGL.so.1";        // likewise
     int threads = 0;                                // of the CPU backend, ≥ 0; 0: all that the process may use
+    PlanRules rules = {};                           // for tests and benchmarks: the same pictures without some of them
 };
 
 // Whether a backend draws pictures of this quality, of a scene with or without an opacity field.
 bool draws(Backend backend, const Quality& quality, FieldsRead fields = FieldsRead::one);
 // Throws Error (option), which says what to do instead, when it does not; so do renderers.
 void require_drawn(Backend backend, const Quality& quality, FieldsRead fields = FieldsRead::one);
-// The native one where it can; what it does not draw, OpenGL does. Pixels that sort themselves are native only.
-Backend usual_backend(const Quality& quality, FieldsRead fields = FieldsRead::one);
+// OpenGL on a GPU; without one the native backend where it can, and what it does not draw, OpenGL on the CPU does. Pixels that sort
+// themselves are native only.
+Backend usual_backend(const Quality& quality, FieldsRead fields = FieldsRead::one, const Gpu& gpu = {});
+
+// Whether EGL offers a GPU here. A few milliseconds where there is none.
+Gpu find_gpu(const RendererOptions& options = {});
 
 // Throws Error (environment) when the backend is not available here; the message names the package to install.
 std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options = {});

@@ -76,6 +76,7 @@ private:
     std::vector<CellId> extra_cells_;
     std::vector<std::uint32_t> items_;   // the order, where it is not the sorter's own
     std::vector<std::uint32_t> sorted_;  // nearly
+    std::vector<float> keys_;            // of them: nearness
     // For scenes with isosurfaces, as ScreenSurfaces says.
     ScreenSurfaces surfaces_;
     std::vector<glm::dvec3> precise_points_;

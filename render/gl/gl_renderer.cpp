@@ -25,8 +25,8 @@ constexpr std::size_t cells_per_chunk = 16384;
 constexpr double longest_segment = 2.0;
 
 // The context must be current before the members that are OpenGL objects are made.
-OsmesaContext current(OsmesaContext context) {
-    context.make_current();
+std::unique_ptr<Context> current(std::unique_ptr<Context> context) {
+    context->make_current();
     return context;
 }
 
@@ -91,55 +91,64 @@ void draw(TriangleStream& stream, const ViewOrder& order, Statistics& statistics
 
 }  // namespace
 
-GlRenderer::GlRenderer(OsmesaContext context)
+GlRenderer::GlRenderer(std::unique_ptr<Context> context, const PlanRules& rules)
     : context_(current(std::move(context))),
       segments_(make_triangle_stream<StreamVertex>()),
       two_field_segments_(make_triangle_stream<TwoFieldVertex>()),
       lit_(make_triangle_stream<LitVertex>()),
-      surface_segments_(make_triangle_stream<SurfaceVertex>()) {}
+      surface_segments_(make_triangle_stream<SurfaceVertex>()),
+      rules_(rules) {
+    context_->release();
+}
 
-// The OpenGL objects below are deleted in their own context, whatever is current now.
-GlRenderer::~GlRenderer() { context_.make_current(); }
+// The OpenGL objects below are deleted in their own context, which goes last.
+GlRenderer::~GlRenderer() { context_->make_current(); }
+
+void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
+    const CurrentContext current(*context_);
+    prepare_here(scene, quality);
+}
 
 // Brings what depends on the scene and the quality up to date; usually there is nothing to do.
-void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
+void GlRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     require_drawn(Backend::gl_osmesa, quality, fields_read(scene));
     SurfacePass::require_drawn(scene, quality);
     WindowTexture::require_drawn(scene, quality);
-    context_.make_current();
     const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field &&
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
         surfaces_.reset();
-        prepared_.emplace(scene, SurfacePass::sides_for(quality.surfaces));
+        prepared_.emplace(scene, SurfacePass::sides_for(quality.surfaces), rules_);
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
-    if (!same_transfer || !(shader_ || lighting_) || method_ != quality.method) prepare_light(scene, quality, same_cells);
     prepare_surfaces(scene, quality);
+    plan_ = plan_scene(prepared_->facts(), quality, Backend::gl_osmesa, rules_);
+    if (plan_.sorts()) prepared_->sorter();
+    if (!same_transfer || !(shader_ || lighting_) || method_ != plan_.method) prepare_light(scene, plan_.method, same_cells);
 }
 
 // The method's tables; without any where that fails, so that the next call makes them.
-void GlRenderer::prepare_light(const Scene& scene, const Quality& quality, bool same_cells) {
+void GlRenderer::prepare_light(const Scene& scene, const Method& method, bool same_cells) {
     const SceneUnits& units = prepared_->units();
     const ScalarSpan span{units.scalar_low, units.scalar_high};
     const ScalarSpan opacity_span = scene.opacity_field ? ScalarSpan{units.opacity_low, units.opacity_high} : span;
     const TransferFunction transfer = in_scene_units(*scene.transfer, span, opacity_span, units.length);
     // A walk over all cells, which one method alone wants to know of.
-    const double mean_length = quality.method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
+    const double mean_length = method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
     lighting_.reset();
     auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
-    const bool keeps = shader && same_cells && method_ == quality.method;
-    if (light_at_vertices(quality.method)) {
+    const bool keeps = shader && same_cells && method_ == method;
+    if (light_at_vertices(method)) {
         shader.reset();
-        lighting_ = make_vertex_lighting(quality.method, transfer, longest_segment, mean_length);
+        lighting_ = make_vertex_lighting(method, transfer, longest_segment, mean_length);
     } else if (!keeps || !shader->update(transfer)) {
         shader.reset();  // its memory first
-        shader = make_segment_shader(quality.method, transfer, fields_read(scene), longest_segment, mean_length);
+        shader = make_segment_shader(method, transfer, fields_read(scene), longest_segment, mean_length);
     }
     shader_ = std::move(shader);
-    method_ = quality.method;
+    method_ = method;
 }
 
 void GlRenderer::prepare_surfaces(const Scene& scene, const Quality& quality) {
@@ -167,14 +176,24 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     const Stopwatch total;
     validate(camera, "camera");
     validate(size, "size");
-    prepare(scene, quality);
-    const bool sorted = !prepared_->only_opaque_surfaces();
-    if (!target_.is(size, quality.target, !sorted)) target_ = Target(size, quality.target, !sorted);
+    const CurrentContext current(*context_);
+    prepare_here(scene, quality);
+    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, DepthWindow::is_needed(scene), rules_);
     statistics.ms.plan = total.ms();
+    if (plan.drawing == Plan::Drawing::nothing) {
+        Image image(size.width, size.height);
+        if (DepthWindow::is_needed(scene)) DepthWindow(scene, camera, size, prepared_->units().length).add_bodies(image);
+        statistics.ms.total = total.ms();
+        describe(statistics, quality, plan);
+        if (out) *out = std::move(statistics);
+        return image;
+    }
+    const bool nearest = plan.drawing == Plan::Drawing::nearest_surfaces;
+    if (!target_.is(size, quality.target, nearest)) target_ = Target(size, quality.target, nearest);
 
     const Stopwatch sort;
     OrderReport order_report;
-    const ViewOrder order = find_order(camera, size, quality, order_report);
+    const ViewOrder order = find_order(plan, camera, size, quality, order_report);
     statistics.ms.sort = sort.ms();
 
     const Stopwatch transform;
@@ -187,9 +206,9 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     }
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
-    sorted ? set_blending() : set_depth_test();
+    nearest ? set_depth_test() : set_blending();
     if (surfaces_) {
-        draw_surfaces(cells, order, statistics);
+        draw_surfaces(cells, order, nearest, statistics);
     } else {
         lighting_ ? draw_lit(cells, order, statistics) : draw_segments(cells, order, statistics);
     }
@@ -202,27 +221,34 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.ms.read_back = read_back.ms();
     statistics.ms.total = total.ms();
 
-    statistics.counts.cells = scene.mesh->tets.size();
-    statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
-    statistics.method = to_string(quality.method);
-    statistics.target = to_string(quality.target);
-    statistics.table_bytes = (shader_ ? shader_->table_bytes() : 0) + (surfaces_ ? surfaces_->table_bytes() : 0);
-    statistics.backend = "gl_osmesa";
-    statistics.backend_version = driver_version();
+    describe(statistics, quality, plan);
     if (out) {  // the proof of the order is no part of the frame
-        if (sorted) {
+        if (plan.sorts()) {
             prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
-        } else {
-            statistics.order = "none";  // needed, that is
-            statistics.order_exact = true;
+            tell_order(statistics.plan, statistics.order, statistics.order_exact);
         }
         *out = std::move(statistics);
     }
     return image;
 }
 
-ViewOrder GlRenderer::find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report) {
-    if (prepared_->only_opaque_surfaces()) return {prepared_->surfaces()->crossed(), {}};
+// What is known without the order of cells.
+void GlRenderer::describe(Statistics& statistics, const Quality& quality, const Plan& plan) const {
+    statistics.counts.cells = prepared_->facts().cells;
+    statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
+    statistics.method = to_string(quality.method);
+    statistics.target = to_string(quality.target);
+    statistics.table_bytes = (shader_ ? shader_->table_bytes() : 0) + (surfaces_ ? surfaces_->table_bytes() : 0);
+    statistics.backend = context_->name();
+    statistics.backend_version = driver_version();
+    statistics.plan = plan.decisions;
+    statistics.order = "none";  // needed, that is
+    statistics.order_exact = true;
+}
+
+ViewOrder GlRenderer::find_order(const Plan& plan, const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report) {
+    if (plan.drawing == Plan::Drawing::nearest_surfaces) return {prepared_->surfaces()->crossed(), {}};
+    if (plan.drawing == Plan::Drawing::sum) return prepared_->any_order();
     return prepared_->order(camera, size, quality.order, &report);
 }
 
@@ -246,13 +272,13 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
                        [&](const ViewOrder& chunk, TriangleBatch& batch) { cells.project(chunk, batch); });
 }
 
-void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
+void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, bool nearest, Statistics& statistics) {
     const NearnessFrame frame = cells.nearness_frame();
     const bool medium = prepared_->has_medium();
     const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
                                       shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
-                                      surfaces_->defines(frame.perspective) + (windows_ ? "#define WINDOW\n" : ""));
-    surfaces_->bind(surfaces, cells, frame, windows_.has_value());
+                                      surfaces_->defines(frame.perspective, nearest) + (windows_ ? "#define WINDOW\n" : ""));
+    surfaces_->bind(surfaces, cells, frame, {.nearest = nearest, .windowed = windows_.has_value()});
     if (windows_) windows_->bind(surfaces);
     if (medium) shader_->bind(surfaces);
     surfaces.use();

@@ -24,7 +24,6 @@ struct OsmesaContext::Library {
     MakeCurrent make_current = nullptr;
     GetProcAddress get_proc_address = nullptr;
     OSMesaContext context = nullptr;
-    bool loaded = false;  // glad's functions
     // The context's own colour buffer, never drawn to: pictures go to framebuffer objects.
     std::array<GLubyte, 4> buffer{};
 
@@ -66,19 +65,16 @@ OsmesaContext::OsmesaContext(const std::string& name) : library_(std::make_uniqu
 }
 
 OsmesaContext::~OsmesaContext() = default;
-OsmesaContext::OsmesaContext(OsmesaContext&&) noexcept = default;
-OsmesaContext& OsmesaContext::operator=(OsmesaContext&&) noexcept = default;
 
-void OsmesaContext::make_current() {
+void OsmesaContext::bind() {
     Library& library = *library_;
     if (!library.make_current(library.context, library.buffer.data(), GL_UNSIGNED_BYTE, 1, 1)) {
         fail("OSMesaMakeCurrent", "success", "a refusal");
     }
-    // OSMesaGetProcAddress answers for any name, so the version is what counts, not the pointers.
-    if (!library.loaded && gladLoadGL(library.get_proc_address) < GLAD_MAKE_VERSION(4, 5)) {
-        fail("OSMesa", "OpenGL 4.5", "an older version");
-    }
-    library.loaded = true;
 }
+
+void OsmesaContext::release() noexcept { library_->make_current(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
+
+Context::Loader OsmesaContext::loader() const { return library_->get_proc_address; }
 
 }  // namespace cellproj::gl

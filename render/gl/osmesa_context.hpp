@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// An OpenGL 4.5 core context on the CPU, off screen, through Mesa's OSMesa. The library is loaded when the first context is made and
-// not linked: without it the program still starts, and says what is missing. It also must not meet Mesa's EGL in one
-// process (they share the table of the current context).
+// OpenGL on the CPU through Mesa's OSMesa.
 #pragma once
 
 #include <memory>
 #include <string>
 
+#include "render/gl/context.hpp"
+
 namespace cellproj::gl {
 
-class OsmesaContext {
+class OsmesaContext : public Context {
 public:
     // Throws Error (environment) when the library is missing, too old, or refuses OpenGL 4.5 core.
     explicit OsmesaContext(const std::string& library);
-    ~OsmesaContext();
-    OsmesaContext(OsmesaContext&&) noexcept;
-    OsmesaContext& operator=(OsmesaContext&&) noexcept;
+    ~OsmesaContext() override;
 
-    // Makes the context current in the calling thread and the OpenGL functions (glad) ready to use.
-    void make_current();
+    const char* name() const override { return "gl_osmesa"; }
+    void release() noexcept override;
 
 private:
+    void bind() override;
+    Loader loader() const override;
+
     struct Library;
     std::unique_ptr<Library> library_;
 };

@@ -90,21 +90,22 @@ void SurfacePass::upload_tables() {
     first_ = Texture::table_2d(method_.size, TableStorage::float32, first);
 }
 
-std::string SurfacePass::defines(bool perspective) const {
+std::string SurfacePass::defines(bool perspective, bool nearest) const {
     const bool medium = prepared_.has_medium(), two_fields = fields_read(prepared_.scene()) == FieldsRead::two;
     const Shading shading = scene().shading;
     return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (medium ? "#define MEDIUM\n" : "") +
            (medium && two_fields ? "#define TWO_FIELDS\n" : "") + (shading != Shading::unlit ? "#define LIT\n" : "") +
-           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (prepared_.only_opaque_surfaces() ? "#define NEAREST\n" : "") +
+           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
            (method_.kind != SurfaceMethodKind::exact ? "#define TABLE\n" : "") +
            (method_.kind == SurfaceMethodKind::combined ? "#define COMBINED\n" : "");
 }
 
 // Sets what the variant reads, no more: a uniform that is not read is none.
-void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool windowed) const {
+void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, Variant variant) const {
     const ScreenTransform& transform = cells.transform();
     const bool perspective = transform.perspective();
-    const bool lit = scene().shading != Shading::unlit, medium = prepared_.has_medium(), nearest = prepared_.only_opaque_surfaces();
+    const bool lit = scene().shading != Shading::unlit, medium = prepared_.has_medium();
+    const auto [nearest, windowed] = variant;
     const auto set = [&](const char* name, double value) { program.set(name, static_cast<float>(value)); };
     if (perspective) set("inverse_far", frame.far);
     if (perspective && (medium || windowed)) set("inverse_near", 1.0 / cells.near_depth());

@@ -30,9 +30,12 @@ public:
     std::size_t table_bytes() const { return layers_.bytes() + first_.bytes(); }
 
     // What is defined and bound follows the scene's transfer function of the moment.
-    std::string defines(bool perspective) const;
-    // `windowed`: the variant WINDOW.
-    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool windowed) const;
+    struct Variant {
+        bool nearest;   // NEAREST: the nearest surface of each pixel is all that is drawn
+        bool windowed;  // WINDOW: rays are cut
+    };
+    std::string defines(bool perspective, bool nearest) const;  // without WINDOW
+    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, Variant variant) const;
 
 private:
     const SurfaceScene& scene() const { return prepared_.surfaces()->scene(); }
