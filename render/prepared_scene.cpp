@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "classify/segment_method.hpp"
 #include "mesh/error.hpp"
 #include "render/order_check.hpp"
 
@@ -168,25 +169,62 @@ std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& uni
 
 }  // namespace
 
-PreparedScene::PreparedScene(Scene scene)
-    : scene_(std::move(scene)), units_(find_units(scene_)), sorter_(*scene_.mesh),
+PreparedScene::PreparedScene(Scene scene, const PlanRules& rules)
+    : scene_(std::move(scene)), units_(find_units(scene_)), culling_(rules.culling),
       bins_(find_bins(main_field(scene_, units_))),
       opacity_bins_(scene_.opacity_field ? find_bins(opacity_field(scene_, units_)) : std::vector<BinRange>{}) {
+    facts_.box = bounds(scene_.mesh->points);
+    facts_.cells = bins_.size();
+    facts_.location = scene_.field->location;
+    facts_.fields = fields_read(scene_);
+    for (std::size_t cell = 0; cell < bins_.size(); ++cell) facts_.not_finite += !finite(cell);
     if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_);
     find_visible_cells();
 }
 
-void PreparedScene::find_visible_cells() {
-    visible_ = find_visible(scene_, units_, bins_, opacity_bins_);
-    has_medium_ = std::ranges::find(visible_, std::uint8_t{1}) != visible_.end();
-    if (!surfaces_) return;
-    for (const auto& cells : {surfaces_->crossed(), surfaces_->beside_jumps()})
-        for (const CellId cell : cells)
-            visible_[cell] |= opacity_bins_.empty() || opacity_bins_[cell].low <= opacity_bins_[cell].high;  // else left out
+bool PreparedScene::finite(std::size_t cell) const {
+    return bins_[cell].low <= bins_[cell].high && (opacity_bins_.empty() || opacity_bins_[cell].low <= opacity_bins_[cell].high);
 }
 
-bool PreparedScene::only_opaque_surfaces() const {
-    return surfaces_ && !has_medium_ && !surfaces_->jump() && surfaces_->scene().isosurfaces.opaque();
+void PreparedScene::find_visible_cells() {
+    visible_ = find_visible(scene_, units_, bins_, opacity_bins_);
+    any_order_.clear();
+    find_facts();
+    if (surfaces_)
+        for (const auto& cells : {surfaces_->crossed(), surfaces_->beside_jumps()})
+            for (const CellId cell : cells) visible_[cell] |= finite(cell);  // else left out
+    if (culling_) return;
+    for_all(visible_.size(), [&](std::size_t cell) { visible_[cell] = finite(cell); });
+}
+
+// Of the cells whose medium is seen, and of the function in the range of its field: the last node below and the first one above hold no more.
+void PreparedScene::find_facts() {
+    facts_.medium = static_cast<std::size_t>(std::ranges::count(visible_, std::uint8_t{1}));
+    const ScalarSpan span{units_.scalar_low, units_.scalar_high};
+    const ScalarSpan opacity_span = scene_.opacity_field ? ScalarSpan{units_.opacity_low, units_.opacity_high} : span;
+    const TransferFunction transfer = in_scene_units(*scene_.transfer, span, opacity_span, units_.length);
+    const auto& extinction = transfer.extinction_nodes();
+    const auto& color = transfer.color_nodes();
+    facts_.absorbs = std::ranges::any_of(extinction, [](const ExtinctionNode& node) { return node.extinction > 0.0; });
+    facts_.constant_light =
+        std::ranges::all_of(extinction, [&](const ExtinctionNode& node) { return node.extinction == extinction.front().extinction; }) &&
+        std::ranges::all_of(color, [&](const ColorNode& node) { return node.color == color.front().color; });
+    facts_.surfaces.reset();
+    if (!surfaces_) return;
+    facts_.surfaces = {surfaces_->values().size(), surfaces_->crossed().size(), surfaces_->scene().isosurfaces.opaque(), surfaces_->jump(),
+                       surfaces_->scene().shading};
+}
+
+VisibilitySorter& PreparedScene::sorter() {
+    if (!sorter_) sorter_.emplace(*scene_.mesh);
+    return *sorter_;
+}
+
+ViewOrder PreparedScene::any_order() {
+    if (any_order_.empty())
+        for (CellId cell = 0; cell < visible_.size(); ++cell)
+            if (visible_[cell]) any_order_.push_back(cell);
+    return {any_order_, {}};
 }
 
 double PreparedScene::mean_chord() {
@@ -211,7 +249,7 @@ void PreparedScene::set_surfaces(std::shared_ptr<const SurfaceScene> surfaces) {
 
 ViewOrder PreparedScene::order(const Camera& camera, ImageSize size, std::optional<OrderMethod> method, OrderReport* report) {
     const PixelGrid pixels = pixel_grid(camera, size);
-    return sorter_.order(camera.viewpoint(), report, method, &pixels, visible_);
+    return sorter().order(camera.viewpoint(), report, method, &pixels, visible_);
 }
 
 void PreparedScene::judge(const ViewOrder& order, const OrderReport& report, const Camera& camera, ImageSize size,
@@ -221,7 +259,7 @@ void PreparedScene::judge(const ViewOrder& order, const OrderReport& report, con
     statistics.counts.unordered = report.unordered;
     statistics.counts.cycles = report.cycles;
     statistics.counts.split_cells = report.split_cells;
-    statistics.counts.order_violations = sorter_.count_violations(order, camera.viewpoint());
+    statistics.counts.order_violations = sorter().count_violations(order, camera.viewpoint());
     if (check_rays == 0) return;
     if (!ray_index_) ray_index_ = std::make_unique<const RayIndex>(*scene_.mesh);
     statistics.order_check = check_order(*ray_index_, visible_.size(), order, camera, size, check_rays);

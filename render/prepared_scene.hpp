@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "project/camera.hpp"
+#include "render/plan.hpp"
 #include "render/prepared_surfaces.hpp"
 #include "render/ray_index.hpp"
 #include "render/scene.hpp"
@@ -35,12 +36,15 @@ private:
 
 class PreparedScene {
 public:
-    // Throws Error (data) when the field does not fit the mesh or has no finite value.
-    explicit PreparedScene(Scene scene);
+    // Throws Error (data) when the field does not fit the mesh or has no finite value. Only `culling` of the rules counts here.
+    explicit PreparedScene(Scene scene, const PlanRules& rules = {});
 
     const Scene& scene() const { return scene_; }
     const SceneUnits& units() const { return units_; }
-    VisibilitySorter& sorter() { return sorter_; }
+    // What a plan is made from.
+    const SceneFacts& facts() const { return facts_; }
+    // Made when it is asked for first: some scenes need no order.
+    VisibilitySorter& sorter();
     // The order of the visible cells for a picture; valid until the next one. `method`: nothing for one that is exact for this mesh.
     ViewOrder order(const Camera& camera, ImageSize size, std::optional<OrderMethod> method, OrderReport* report);
     // What an order is worth, into the statistics: the report, violated relations and, for `check_rays` > 0, the judge on as many pixels.
@@ -52,14 +56,14 @@ public:
 
     // visible()[cell] is 0 for cells that add nothing to any picture: no emission and no extinction over the range of
     // their scalars and no isosurface in them, or a scalar of either field that is not finite.
+    // Without culling it is 1 for all but the last.
     const std::vector<std::uint8_t>& visible() const { return visible_; }
+    // The visible cells as they lie in memory, for pictures that need no order. Valid until the scene changes.
+    ViewOrder any_order();
     // Null for scenes that have none.
     const PreparedSurfaces* surfaces() const { return surfaces_ ? &*surfaces_ : nullptr; }
     // Whether anything but isosurfaces can be seen.
-    bool has_medium() const { return has_medium_; }
-    // Whether the nearest surface of each pixel tells its light, so that cells need no order: opaque ones, no medium, and none in jumps
-    // of the scalar (PreparedSurfaces::jump).
-    bool only_opaque_surfaces() const;
+    bool has_medium() const { return facts_.medium > 0; }
 
     // Another transfer function over the same mesh and field: only the visibility is found anew, for most cells from bins
     // of the field's range.
@@ -73,17 +77,21 @@ public:
     };
 
 private:
+    bool finite(std::size_t cell) const;  // all of its scalars
     void find_visible_cells();
+    void find_facts();
 
     Scene scene_;
     SceneUnits units_;
-    VisibilitySorter sorter_;
+    bool culling_;
+    SceneFacts facts_;
+    std::optional<VisibilitySorter> sorter_;
     std::optional<double> mean_chord_;  // once somebody has asked
     std::unique_ptr<const RayIndex> ray_index_;  // once an order was to be judged
     std::vector<BinRange> bins_, opacity_bins_;  // #T; none without an opacity field
     std::optional<PreparedSurfaces> surfaces_;
-    bool has_medium_ = true;
     std::vector<std::uint8_t> visible_;
+    std::vector<CellId> any_order_;  // once somebody has asked
 };
 
 }  // namespace cellproj

@@ -55,11 +55,11 @@ Gpu find_gpu(const RendererOptions& options) { return gl::find_gpu(options.egl_l
 std::unique_ptr<Renderer> make_renderer(Backend backend, const RendererOptions& options) {
     switch (backend) {
         case Backend::gl_osmesa:
-            return std::make_unique<gl::GlRenderer>(std::make_unique<gl::OsmesaContext>(options.osmesa_library));
+            return std::make_unique<gl::GlRenderer>(std::make_unique<gl::OsmesaContext>(options.osmesa_library), options.rules);
         case Backend::gl_egl:
-            return std::make_unique<gl::GlRenderer>(std::make_unique<gl::EglContext>(options.egl_library));
+            return std::make_unique<gl::GlRenderer>(std::make_unique<gl::EglContext>(options.egl_library), options.rules);
         case Backend::cpu:
-            return cpu::make_renderer(options.threads);
+            return cpu::make_renderer(options.threads, options.rules);
     }
     return nullptr;
 }

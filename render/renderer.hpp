@@ -12,6 +12,7 @@
 #include "project/camera.hpp"
 #include "render/gpu.hpp"
 #include "render/image.hpp"
+#include "render/plan_rules.hpp"
 #include "render/scene.hpp"
 #include "render/statistics.hpp"
 #include "render/target_format.hpp"
@@ -56,6 +57,7 @@ struct RendererOptions {
     std::string osmesa_library = "libOSMesa.so.8";  // name or path, loaded when the renderer is made
     std::string egl_library = "libEGL.so.1";        // likewise
     int threads = 0;                                // of the CPU backend, ≥ 0; 0: all that the process may use
+    PlanRules rules = {};                           // for tests and benchmarks: the same pictures without some of them
 };
 
 // Whether a backend draws pictures of this quality, of a scene with or without an opacity field.

@@ -24,6 +24,12 @@ Json order_check_json(const std::optional<OrderCheck>& check) {
     return {{"rays", check->rays}, {"wrong_rays", check->wrong_rays}, {"wrong_pairs", check->wrong_pairs}};
 }
 
+Json plan_json(const std::vector<Decision>& plan) {
+    Json decisions = Json::array();
+    for (const Decision& d : plan) decisions.push_back({{"rule", d.rule}, {"chosen", d.chosen}, {"why", d.why}});
+    return decisions;
+}
+
 Json picture_json(const Statistics& picture) {
     const auto& ms = picture.ms;
     const auto& counts = picture.counts;
@@ -53,7 +59,8 @@ Json picture_json(const Statistics& picture) {
             {"order", picture.order},
             {"order_exact", picture.order_exact},
             {"order_check", order_check_json(picture.order_check)},
-            {"error", or_null(picture.error)}};
+            {"error", or_null(picture.error)},
+            {"plan", plan_json(picture.plan)}};
 }
 
 }  // namespace

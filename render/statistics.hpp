@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "render/plan_rules.hpp"
+
 namespace cellproj {
 
 // Milliseconds since construction.
@@ -49,10 +51,11 @@ struct Statistics {
     std::string method;           // of integration: "preint3d:64"
     std::string target;           // format of the framebuffer: "rgba32f"
     std::size_t table_bytes = 0;  // memory of its tables
-    std::string backend;          // "gl_osmesa", "cpu"
+    std::string backend;          // "gl_osmesa", "gl_egl", "cpu"
     std::string backend_version;  // what the driver says of itself; the instruction set and the threads
     std::string order;            // method of sorting: "mpvo"; "pixel", "none": cells needed no order
     bool order_exact = false;     // proven for this mesh and view
+    std::vector<Decision> plan;   // what the scene required (render/plan.hpp)
     std::optional<OrderCheck> order_check;  // when it was asked for
     std::optional<double> error;  // measured error, when it was measured
 };

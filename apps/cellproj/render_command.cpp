@@ -14,6 +14,7 @@
 #include "mesh/error.hpp"
 #include "progress.hpp"
 #include "render/output_file.hpp"
+#include "render/plan.hpp"
 #include "render/renderer.hpp"
 #include "render/trade_choice.hpp"
 #include "scene_options.hpp"
@@ -31,7 +32,7 @@ struct RenderOptions {
     std::filesystem::path output, stats;
     std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto";
     std::optional<double> max_error;  // --max-error: the method is chosen by measuring
-    bool verify_order = false;
+    bool verify_order = false, explain = false;
     std::vector<double> background{1, 1, 1};
     std::string backend = "auto";
     int threads = 0;
@@ -118,6 +119,12 @@ void print_line(const std::filesystem::path& file, const Statistics& s) {
                 s.ms.total, s.ms.sort, s.ms.project, s.ms.draw, s.backend.c_str());
 }
 
+// What --explain asks for; not again for pictures that were planned as the one before.
+void print_plan(const Statistics& s, const Statistics* before) {
+    const std::string text = in_words(s.plan);
+    if (!before || text != in_words(before->plan)) std::printf("%s", text.c_str());
+}
+
 // The median over the pictures, without the first one, in which the driver compiles its shaders and tables are made.
 void print_median(const std::vector<Statistics>& pictures) {
     if (pictures.size() < 3) return;
@@ -177,8 +184,8 @@ void render_pictures(const RenderOptions& options) {
                     .order_per_pixel = options.order == "pixel",
                     .check_rays = options.verify_order ? rays_of_proof : 0};
     const FieldsRead fields = options.scene.fields();
-    const Backend backend = chosen_backend(options.backend).value_or(usual_backend(quality, fields));
-    require_drawn(backend, quality, fields);
+    const BackendWish wish = parse_backend(options.backend);
+    const auto [backend, backend_decision] = choose_backend(wish, quality, fields, depends_on_gpu(wish) ? find_gpu() : Gpu{});
     require_writable_image(options.output);
     const std::shared_ptr<const Font> font = require_annotated(options.annotations, options.output, size);
     if (!options.stats.empty()) require_writable(options.stats);
@@ -209,6 +216,7 @@ void render_pictures(const RenderOptions& options) {
         Statistics statistics;
         Image image = renderer->render(scene, views[i], view, quality, &statistics);
         if (i == 0) statistics.error = error;
+        statistics.plan.insert(statistics.plan.begin(), backend_decision);
         const Stopwatch writing;
         std::map<std::string, std::string> text{
             {"Software", "cellproj " CELLPROJ_VERSION},
@@ -228,6 +236,7 @@ void render_pictures(const RenderOptions& options) {
         statistics.ms.write = writing.ms();
         print_line(file, statistics);
         print_proof(statistics);
+        if (options.explain) print_plan(statistics, run.pictures.empty() ? nullptr : &run.pictures.back());
         run.pictures.push_back(std::move(statistics));
     }
     print_median(run.pictures);
@@ -260,8 +269,9 @@ void add_render_command(CLI::App& app) {
     command->add_option("--target", options->target, "What cells are blended in: rgba8, rgba16, rgba16f or rgba32f")
         ->capture_default_str();
     command->add_option("--backend", options->backend,
-                        "What draws: cpu (native), gl (OpenGL by OSMesa), or auto: cpu, and gl for methods and targets that only it has")
-        ->check(CLI::IsMember({"auto", "cpu", "gl"}))->capture_default_str();
+                        "What draws: cpu (native), egl (OpenGL, on a GPU if there is one), osmesa (OpenGL on the CPU), gl: egl on a GPU, else osmesa; "
+                        "auto: a GPU; without one cpu, and osmesa for methods and targets that only OpenGL has")
+        ->check(CLI::IsMember({"auto", "cpu", "gl", "egl", "osmesa"}))->capture_default_str();
     command->add_option("--threads", options->threads, "Threads of the cpu backend; 0: all that the process may use")
         ->check(CLI::Range(0, 1024))->capture_default_str();
     command->add_option("--order", options->order,
@@ -270,6 +280,7 @@ void add_render_command(CLI::App& app) {
         ->check(CLI::IsMember({"auto", "centroid", "power", "mpvo", "bsp", "sxmpvo", "pixel"}))->capture_default_str();
     command->add_flag("--verify-order", options->verify_order,
                       "Prove the order of every picture: relations of neighbours, and the sequence of cells along 4096 pixels' rays");
+    command->add_flag("--explain", options->explain, "Say what was chosen for the picture and why: backend, cells, order, method and more");
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
     command->callback([options] { render_pictures(*options); });
 }

@@ -157,12 +157,6 @@ LoadedScene load_scene(const SceneOptions& options) {
     return {std::move(input), std::move(scene)};
 }
 
-std::optional<Backend> chosen_backend(const std::string& name) {
-    if (name == "cpu") return Backend::cpu;
-    if (name == "gl") return Backend::gl_osmesa;
-    return std::nullopt;
-}
-
 std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& input, ImageSize size, bool turn) {
     std::vector<Camera> cameras;
     if (!options.camera.empty()) {

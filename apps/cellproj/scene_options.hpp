@@ -55,9 +55,6 @@ struct LoadedScene {
 // Reads the mesh and chooses field and transfer function; warns of values that are not finite. Throws Error.
 LoadedScene load_scene(const SceneOptions& options);
 
-// The backend that `--backend` names: cpu, gl, or none for auto.
-std::optional<Backend> chosen_backend(const std::string& name);
-
 // The cameras of --camera or of the embedded scene, or one that sees the mesh, from every side of it if it is to `turn`.
 std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& input, ImageSize size, bool turn);
 

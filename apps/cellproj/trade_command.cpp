@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "mesh/error.hpp"
 #include "progress.hpp"
 #include "render/output_file.hpp"
+#include "render/plan.hpp"
 #include "render/statistics.hpp"
 #include "render/trade.hpp"
 #include "scene_options.hpp"
@@ -27,11 +29,16 @@ struct TradeCommandOptions {
     std::optional<std::size_t> sample;
     int rounds = 5;
     std::string backend = "auto";
+    // What follows of it on this machine.
+    BackendWish wish = BackendWish::automatic;
+    Gpu gpu;
 };
 
-// What the user of `render` gets: the native backend, and OpenGL for what it does not draw. Each is made when it is wanted first.
-class EitherRenderer : public Renderer {
+// The backend that `render` would take, for each quality. Renderers are made when they are wanted first.
+class ChosenRenderer : public Renderer {
 public:
+    explicit ChosenRenderer(const TradeCommandOptions& options) : wish_(options.wish), gpu_(options.gpu) {}
+
     void prepare(const Scene& scene, const Quality& quality) override { of(scene, quality).prepare(scene, quality); }
     Image render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* statistics) override {
         return of(scene, quality).render(scene, camera, size, quality, statistics);
@@ -39,28 +46,31 @@ public:
 
 private:
     Renderer& of(const Scene& scene, const Quality& quality) {
-        const Backend backend = usual_backend(quality, fields_read(scene));
-        std::unique_ptr<Renderer>& renderer = backend == Backend::cpu ? cpu_ : gl_;
-        if (!renderer) renderer = make_renderer(backend);
+        std::unique_ptr<Renderer>& renderer = renderers_[wished_backend(wish_, quality, fields_read(scene), gpu_)];
+        if (!renderer) renderer = make_renderer(wished_backend(wish_, quality, fields_read(scene), gpu_));
         return *renderer;
     }
 
-    std::unique_ptr<Renderer> cpu_, gl_;
+    BackendWish wish_;
+    Gpu gpu_;
+    std::map<Backend, std::unique_ptr<Renderer>> renderers_;
 };
 
-std::unique_ptr<Renderer> make_chosen_renderer(const std::string& backend) {
-    if (const auto chosen = chosen_backend(backend)) return make_renderer(*chosen);
-    return std::make_unique<EitherRenderer>();
-}
-
-std::string in_words(const std::string& backend) {
-    if (backend == "cpu") return "the native backend";
-    return backend == "gl" ? "OpenGL on OSMesa" : "the native backend, OpenGL on OSMesa for what it does not draw";
+std::string in_words(BackendWish wish, const Gpu& gpu) {
+    const char* egl = gpu.found ? "OpenGL on a GPU" : "OpenGL by EGL";
+    switch (wish) {
+        case BackendWish::cpu: return "the native backend";
+        case BackendWish::egl: return egl;
+        case BackendWish::osmesa: return "OpenGL on OSMesa";
+        case BackendWish::gl: return gpu.found ? egl : "OpenGL on OSMesa";
+        case BackendWish::automatic: break;
+    }
+    return gpu.found ? egl : "the native backend, OpenGL on OSMesa for what it does not draw";
 }
 
 // The backend that has to draw a quality.
 Backend backend_for(const TradeCommandOptions& options, const Quality& quality) {
-    return chosen_backend(options.backend).value_or(usual_backend(quality, options.scene.fields()));
+    return wished_backend(options.wish, quality, options.scene.fields(), options.gpu);
 }
 
 // Those that can draw the scene.
@@ -139,7 +149,7 @@ void run_trade(const TradeCommandOptions& options) {
     }
     const Camera& camera = cameras.front();
     const Truths judged = find_truths(options, scene, camera, size);
-    const auto renderer = make_chosen_renderer(options.backend);
+    const auto renderer = std::make_unique<ChosenRenderer>(options);
     std::vector<TradeRow> rows = [&] {
         Progress progress("rendering in " + std::to_string(qualities.size()) + " ways");
         const auto tell = [&](std::size_t done, std::size_t of) {
@@ -156,7 +166,7 @@ void run_trade(const TradeCommandOptions& options) {
                              .judged = judged.pixels.size(),
                              .whole_picture = judged.whole_picture,
                              .rounds = options.rounds,
-                             .backend = in_words(options.backend),
+                             .backend = in_words(options.wish, options.gpu),
                              .rows = rows,
                              .truth = to_image(judged.pixels, size),
                              .truths = judged.pixels};
@@ -181,12 +191,17 @@ void add_trade_command(CLI::App& app) {
         ->check(CLI::Range(1, 100000000));
     command->add_option("--rounds", options->rounds, "Frames timed per method; the median counts")
         ->check(CLI::Range(1, 1000))->capture_default_str();
-    command->add_option("--backend", options->backend, "What draws: cpu (native), gl (OpenGL by OSMesa), or auto: cpu, and gl for what only it draws")
-        ->check(CLI::IsMember({"auto", "cpu", "gl"}))->capture_default_str();
+    command->add_option("--backend", options->backend, "What draws: cpu (native), egl (OpenGL, on a GPU if there is one), osmesa (OpenGL on the CPU), gl: egl on a GPU, else osmesa; "
+                        "auto: a GPU; without one cpu, and osmesa for what only OpenGL draws")
+        ->check(CLI::IsMember({"auto", "cpu", "gl", "egl", "osmesa"}))->capture_default_str();
     command->add_option("-o,--output", options->page, "Write a page with table, plot, pictures and error maps (HTML)");
     command->add_option("--csv", options->csv, "Write the table as CSV");
     command->add_option("--json", options->json, "Write the table as JSON");
-    command->callback([options] { run_trade(*options); });
+    command->callback([options] {
+        options->wish = parse_backend(options->backend);
+        if (depends_on_gpu(options->wish)) options->gpu = find_gpu();
+        run_trade(*options);
+    });
 }
 
 }  // namespace cellproj::cli

@@ -20,6 +20,7 @@
 #include "render/cpu/kernels.hpp"
 #include "render/cpu/screen_mesh.hpp"
 #include "render/cpu/tile_bins.hpp"
+#include "render/plan.hpp"
 #include "render/prepared_scene.hpp"
 
 namespace cellproj::cpu {
@@ -80,7 +81,7 @@ private:
 
 class CpuRenderer : public Renderer {
 public:
-    explicit CpuRenderer(int threads) : arena_(threads > 0 ? threads : oneapi::tbb::task_arena::automatic) {}
+    CpuRenderer(int threads, const PlanRules& rules) : arena_(threads > 0 ? threads : oneapi::tbb::task_arena::automatic), rules_(rules) {}
 
     void prepare(const Scene& scene, const Quality& quality) override {
         require_drawn(Backend::cpu, quality, fields_read(scene));
@@ -98,12 +99,16 @@ public:
 private:
     void prepare_here(const Scene& scene, const Quality& quality);
     Image render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out);
-    enum class Drawing { by_cells, by_pixels, nearest_surfaces };
+    using Drawing = Plan::Drawing;
+    void prepare_method(const Method& method, const TransferFunction& transfer, bool same_transfer);
+    void describe(Statistics& statistics, const Quality& quality, const Plan& plan) const;
     void draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics);
     bool may_be_opaque() const;
 
     oneapi::tbb::task_arena arena_;
+    PlanRules rules_;
     std::optional<PreparedScene> prepared_;
+    Plan plan_;  // of all views of it
     Method method_;
     std::optional<Classification> classification_;  // of method_, for the prepared scene
     bool classified_ = false;                       // and for its transfer function
@@ -120,7 +125,7 @@ void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
         classification_.reset();
-        prepared_.emplace(scene);
+        prepared_.emplace(scene, rules_);
         mesh_.set_scene(*prepared_);
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
@@ -133,21 +138,27 @@ void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     } else if (same_cells && !same_transfer) {
         mesh_.set_surfaces();  // with or without a medium
     }
-    const bool same_method = classification_ && method_ == quality.method;
+    plan_ = plan_scene(prepared_->facts(), quality, Backend::cpu, rules_);
+    if (plan_.sorts()) prepared_->sorter();
+    prepare_method(plan_.method, *scene.transfer, same_transfer);
+}
+
+void CpuRenderer::prepare_method(const Method& method, const TransferFunction& transfer, bool same_transfer) {
+    const bool same_method = classification_ && method_ == method;
     if (same_transfer && same_method && classified_) return;
     classified_ = false;  // until all of it is done: no stale table behind a failure
 
     const SceneUnits& units = prepared_->units();
-    const TransferFunction transfer = in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
+    const TransferFunction scaled = in_scene_units(transfer, units.scalar_low, units.scalar_high, units.length);
     if (same_method) {
-        classification_->set_transfer(transfer);
+        classification_->set_transfer(scaled);
         classified_ = true;
         return;
     }
     // A walk over all cells, which one method alone wants to know of.
-    const double mean_length = quality.method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
-    classification_.emplace(quality.method, transfer, mean_length);
-    method_ = quality.method;
+    const double mean_length = method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
+    classification_.emplace(method, scaled, mean_length);
+    method_ = method;
     classified_ = true;
 }
 
@@ -155,8 +166,15 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     Statistics statistics;
     const Stopwatch total;
     prepare_here(scene, quality);
+    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, rules_);
     Image image(size.width, size.height);
     statistics.ms.plan = total.ms();
+    if (plan.drawing == Drawing::nothing) {
+        statistics.ms.total = total.ms();
+        describe(statistics, quality, plan);
+        if (out) *out = std::move(statistics);
+        return image;
+    }
 
     const auto region_at = [&](int x, int y) {
         constexpr int side = region_side * tile_side;
@@ -168,14 +186,12 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     const Stopwatch sort;
     OrderReport order_report;
     ViewOrder order;
-    const Drawing drawing = prepared_->only_opaque_surfaces() ? Drawing::nearest_surfaces
-                            : quality.order_per_pixel         ? Drawing::by_pixels
-                                                              : Drawing::by_cells;
+    const Drawing drawing = plan.drawing;
     oneapi::tbb::parallel_invoke(
         [&] {
             // Pixels that sort their own fragments want cells nearly sorted, no more.
             const auto method = drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order;
-            if (drawing != Drawing::nearest_surfaces) order = prepared_->order(camera, size, method, &order_report);
+            if (plan.sorts()) order = prepared_->order(camera, size, method, &order_report);
         },
         [&] {
             mesh_.set_view(camera, size);
@@ -184,6 +200,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     statistics.ms.sort = sort.ms();
 
     const Stopwatch projecting;
+    if (drawing == Drawing::sum) order = prepared_->any_order();
     // In any order; nearly sorted ones hide most of each other.
     if (drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(prepared_->surfaces()->crossed());
     const auto items = mesh_.cut(order);
@@ -194,7 +211,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     for (int y = 0; y < size.height; y += first.height)
         for (int x = 0; x < size.width; x += first.width) {
             const Region region = region_at(x, y);
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, drawing != Drawing::nearest_surfaces && may_be_opaque());
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, plan.sorts() && may_be_opaque());
             draw(image, region, drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }
@@ -205,7 +222,20 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
         if (extra_drawn_[i]) parts.push_back(mesh_.extra_cells()[i]);
     std::sort(parts.begin(), parts.end());
     statistics.counts.drawn += static_cast<std::size_t>(std::unique(parts.begin(), parts.end()) - parts.begin());
-    statistics.counts.cells = scene.mesh->tets.size();
+    describe(statistics, quality, plan);
+    if (out) {  // the proof of the order is no part of the frame
+        if (drawing == Drawing::by_cells) {
+            prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
+            tell_order(statistics.plan, statistics.order, statistics.order_exact);
+        }
+        *out = std::move(statistics);
+    }
+    return image;
+}
+
+// What is known without the order of cells.
+void CpuRenderer::describe(Statistics& statistics, const Quality& quality, const Plan& plan) const {
+    statistics.counts.cells = prepared_->facts().cells;
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
@@ -213,16 +243,9 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     statistics.backend = "cpu";
     statistics.backend_version = instruction_set() + ", " + std::to_string(oneapi::tbb::this_task_arena::max_concurrency()) +
                                  (oneapi::tbb::this_task_arena::max_concurrency() == 1 ? " thread" : " threads");
-    if (out) {  // the proof of the order is no part of the frame
-        if (drawing != Drawing::by_cells) {
-            statistics.order = drawing == Drawing::by_pixels ? "pixel" : "none";
-            statistics.order_exact = true;
-        } else {
-            prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
-        }
-        *out = std::move(statistics);
-    }
-    return image;
+    statistics.plan = plan.decisions;
+    statistics.order = plan.drawing == Drawing::by_pixels ? "pixel" : "none";
+    statistics.order_exact = true;
 }
 
 // Isosurfaces may hide what is behind where together they let less than half through: rays meet them several times.
@@ -259,6 +282,9 @@ void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Stat
                 if (prepared_->surfaces())
                     tile.trails = &trails_[static_cast<std::size_t>(y) * tile.stride + static_cast<std::size_t>(x)];
                 switch (drawing) {
+                    case Drawing::nothing:
+                        break;
+                    case Drawing::sum:
                     case Drawing::by_cells:
                         fragments += draw_tile(mesh_.cells(), shading, tile, items);
                         break;
@@ -279,6 +305,6 @@ void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Stat
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_renderer(int threads) { return std::make_unique<CpuRenderer>(threads); }
+std::unique_ptr<Renderer> make_renderer(int threads, const PlanRules& rules) { return std::make_unique<CpuRenderer>(threads, rules); }
 
 }  // namespace cellproj::cpu

@@ -14,6 +14,6 @@ namespace cellproj::cpu {
 // does not depend on the view is kept; a second picture allocates nothing but itself.
 //
 // Draws isosurfaces (render/README.md), and every method that finds light for each pixel; Error (option) for light at vertices and for other targets than rgba32f.
-std::unique_ptr<Renderer> make_renderer(int threads);
+std::unique_ptr<Renderer> make_renderer(int threads, const PlanRules& rules = {});
 
 }  // namespace cellproj::cpu

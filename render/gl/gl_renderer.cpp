@@ -90,12 +90,13 @@ void draw(TriangleStream& stream, const ViewOrder& order, Statistics& statistics
 
 }  // namespace
 
-GlRenderer::GlRenderer(std::unique_ptr<Context> context)
+GlRenderer::GlRenderer(std::unique_ptr<Context> context, const PlanRules& rules)
     : context_(current(std::move(context))),
       segments_(make_triangle_stream<StreamVertex>()),
       two_field_segments_(make_triangle_stream<TwoFieldVertex>()),
       lit_(make_triangle_stream<LitVertex>()),
-      surface_segments_(make_triangle_stream<SurfaceVertex>()) {
+      surface_segments_(make_triangle_stream<SurfaceVertex>()),
+      rules_(rules) {
     context_->release();
 }
 
@@ -117,34 +118,46 @@ void GlRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     if (!same_cells) {
         Scene medium = scene;  // surfaces are prepared apart: others of them leave the rest as it is
         medium.surfaces = nullptr;
-        prepared_.emplace(std::move(medium));
+        prepared_.emplace(std::move(medium), rules_);
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
-    if (!same_transfer || !(shader_ || lighting_) || method_ != quality.method) prepare_light(scene, quality, same_cells);
     prepare_surfaces(scene);
+    plan_ = plan_scene(facts(), quality, Backend::gl_osmesa, rules_);
+    if (surfaces_) {
+        const bool nearest = plan_.drawing == Plan::Drawing::nearest_surfaces;
+        surfaces_->set_visible(scene.transfer, prepared_->visible(), prepared_->has_medium(), nearest);
+    }
+    if (plan_.sorts()) prepared_->sorter();
+    if (!same_transfer || !(shader_ || lighting_) || method_ != plan_.method) prepare_light(scene, plan_.method, same_cells);
+}
+
+SceneFacts GlRenderer::facts() const {
+    SceneFacts facts = prepared_->facts();
+    if (surfaces_) facts.surfaces = surfaces_->facts();
+    return facts;
 }
 
 // The method's tables; without any where that fails, so that the next call makes them.
-void GlRenderer::prepare_light(const Scene& scene, const Quality& quality, bool same_cells) {
+void GlRenderer::prepare_light(const Scene& scene, const Method& method, bool same_cells) {
     const SceneUnits& units = prepared_->units();
     const ScalarSpan span{units.scalar_low, units.scalar_high};
     const ScalarSpan opacity_span = scene.opacity_field ? ScalarSpan{units.opacity_low, units.opacity_high} : span;
     const TransferFunction transfer = in_scene_units(*scene.transfer, span, opacity_span, units.length);
     // A walk over all cells, which one method alone wants to know of.
-    const double mean_length = quality.method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
+    const double mean_length = method.kind == MethodKind::preint2d ? prepared_->mean_chord() : longest_segment;
     lighting_.reset();
     auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
-    const bool keeps = shader && same_cells && method_ == quality.method;
-    if (light_at_vertices(quality.method)) {
+    const bool keeps = shader && same_cells && method_ == method;
+    if (light_at_vertices(method)) {
         shader.reset();
-        lighting_ = make_vertex_lighting(quality.method, transfer, longest_segment, mean_length);
+        lighting_ = make_vertex_lighting(method, transfer, longest_segment, mean_length);
     } else if (!keeps || !shader->update(transfer)) {
         shader.reset();  // its memory first
-        shader = make_segment_shader(quality.method, transfer, fields_read(scene), longest_segment, mean_length);
+        shader = make_segment_shader(method, transfer, fields_read(scene), longest_segment, mean_length);
     }
     shader_ = std::move(shader);
-    method_ = quality.method;
+    method_ = method;
 }
 
 void GlRenderer::prepare_surfaces(const Scene& scene) {
@@ -157,7 +170,6 @@ void GlRenderer::prepare_surfaces(const Scene& scene) {
         validate(scene);
         surfaces_ = std::make_unique<SurfacePass>(scene, prepared_->units());
     }
-    surfaces_->set_visible(scene.transfer, prepared_->visible());
 }
 
 const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
@@ -175,20 +187,28 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     validate(size, "size");
     const CurrentContext current(*context_);
     prepare_here(scene, quality);
-    const bool sorted = needs_order();
-    if (!target_.is(size, quality.target, !sorted)) target_ = Target(size, quality.target, !sorted);
+    const Plan plan = plan_view(plan_, facts(), camera, size, rules_);
     statistics.ms.plan = total.ms();
+    if (plan.drawing == Plan::Drawing::nothing) {
+        Image image(size.width, size.height);
+        statistics.ms.total = total.ms();
+        describe(statistics, quality, plan);
+        if (out) *out = std::move(statistics);
+        return image;
+    }
+    const bool nearest = plan.drawing == Plan::Drawing::nearest_surfaces;
+    if (!target_.is(size, quality.target, nearest)) target_ = Target(size, quality.target, nearest);
 
     const Stopwatch sort;
     OrderReport order_report;
-    const ViewOrder order = find_order(camera, size, quality, order_report);
+    const ViewOrder order = find_order(plan, camera, size, quality, order_report);
     statistics.ms.sort = sort.ms();
 
     const Stopwatch transform;
     const CellStream cells(*prepared_, camera, size, surfaces_ ? surfaces_->drawn() : std::span<const std::uint8_t>{});
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
-    sorted ? set_blending() : set_depth_test();
+    nearest ? set_depth_test() : set_blending();
     if (surfaces_) {
         draw_surfaces(cells, order, statistics);
     } else {
@@ -202,28 +222,34 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.ms.read_back = read_back.ms();
     statistics.ms.total = total.ms();
 
-    statistics.counts.cells = scene.mesh->tets.size();
-    statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
-    statistics.method = to_string(quality.method);
-    statistics.target = to_string(quality.target);
-    statistics.table_bytes = shader_ ? shader_->table_bytes() : 0;
-    statistics.backend = context_->name();
-    statistics.backend_version = driver_version();
+    describe(statistics, quality, plan);
     if (out) {  // the proof of the order is no part of the frame
-        if (sorted) {
+        if (plan.sorts()) {
             prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
-        } else {
-            statistics.order = "none";  // needed, that is
-            statistics.order_exact = true;
+            tell_order(statistics.plan, statistics.order, statistics.order_exact);
         }
         *out = std::move(statistics);
     }
     return image;
 }
 
-ViewOrder GlRenderer::find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report) {
+// What is known without the order of cells.
+void GlRenderer::describe(Statistics& statistics, const Quality& quality, const Plan& plan) const {
+    statistics.counts.cells = prepared_->facts().cells;
+    statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
+    statistics.method = to_string(quality.method);
+    statistics.target = to_string(quality.target);
+    statistics.table_bytes = shader_ ? shader_->table_bytes() : 0;
+    statistics.backend = context_->name();
+    statistics.backend_version = driver_version();
+    statistics.plan = plan.decisions;
+    statistics.order = "none";  // needed, that is
+    statistics.order_exact = true;
+}
+
+ViewOrder GlRenderer::find_order(const Plan& plan, const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report) {
+    if (!plan.sorts()) return surfaces_ ? surfaces_->any_order() : prepared_->any_order();
     if (!surfaces_) return prepared_->order(camera, size, quality.order, &report);
-    if (!surfaces_->needs_order()) return surfaces_->any_order();
     const PixelGrid pixels = pixel_grid(camera, size);
     return prepared_->sorter().order(camera.viewpoint(), &report, quality.order, &pixels, surfaces_->drawn());
 }

@@ -16,6 +16,7 @@
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/surface_pass.hpp"
 #include "render/gl/triangle_stream.hpp"
+#include "render/plan.hpp"
 #include "render/prepared_scene.hpp"
 #include "render/renderer.hpp"
 
@@ -23,7 +24,7 @@ namespace cellproj::gl {
 
 class GlRenderer : public Renderer {
 public:
-    explicit GlRenderer(std::unique_ptr<Context> context);
+    explicit GlRenderer(std::unique_ptr<Context> context, const PlanRules& rules = {});
     ~GlRenderer() override;
 
     void prepare(const Scene& scene, const Quality& quality) override;
@@ -32,10 +33,11 @@ public:
 
 private:
     void prepare_here(const Scene& scene, const Quality& quality);
-    void prepare_light(const Scene& scene, const Quality& quality, bool same_cells);
+    SceneFacts facts() const;
+    void prepare_light(const Scene& scene, const Method& method, bool same_cells);
     void prepare_surfaces(const Scene& scene);
-    ViewOrder find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
-    bool needs_order() const { return !surfaces_ || surfaces_->needs_order(); }
+    ViewOrder find_order(const Plan& plan, const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
+    void describe(Statistics& statistics, const Quality& quality, const Plan& plan) const;
     const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
     void draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
     void draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
@@ -45,7 +47,9 @@ private:
     std::map<std::string, Program> programs_;  // by their text
     TriangleStream segments_, two_field_segments_, lit_, surface_segments_;
     Target target_;
-    std::optional<PreparedScene> prepared_;
+    PlanRules rules_;
+    std::optional<PreparedScene> prepared_;  // without its isosurfaces
+    Plan plan_;                              // of all views
     Method method_;
     // Of method_, for the prepared scene: either light for each pixel or light at the vertices.
     std::unique_ptr<SegmentShader> shader_;

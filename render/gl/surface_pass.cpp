@@ -75,17 +75,21 @@ bool SurfacePass::is_of(const Scene& scene) const {
            scene_.opacity_field == scene.opacity_field;
 }
 
-void SurfacePass::set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible) {
+SceneFacts::Surfaces SurfacePass::facts() const {
+    // The shader draws flat cells: no surface is lost in a jump of the scalar.
+    return {.count = cells_.thresholds().size(), .crossed = cells_.crossed_count(), .opaque = opaque_, .jump = false, .shading = shading_};
+}
+
+void SurfacePass::set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible, bool medium,
+                              bool nearest) {
     if (!drawn_.empty() && scene_.transfer == transfer) return;
     scene_.transfer = std::move(transfer);
-    const std::vector<std::uint8_t>& crossed = cells_.crossed();
-    has_medium_ = std::ranges::find(visible, std::uint8_t{1}) != visible.end();
-    drawn_ = crossed;
-    if (has_medium_) {
-        for (std::size_t cell = 0; cell < drawn_.size(); ++cell) drawn_[cell] |= visible[cell];
-    }
+    has_medium_ = medium;
+    nearest_ = nearest;
+    drawn_ = cells_.crossed();
+    for (std::size_t cell = 0; cell < drawn_.size(); ++cell) drawn_[cell] |= visible[cell];
     drawn_items_.clear();
-    for (std::size_t cell = 0; cell < drawn_.size() && !needs_order(); ++cell) {
+    for (std::size_t cell = 0; cell < drawn_.size() && nearest_; ++cell) {
         if (drawn_[cell]) drawn_items_.push_back(static_cast<CellId>(cell));
     }
 }
@@ -94,7 +98,7 @@ std::string SurfacePass::defines(bool perspective) const {
     return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (has_medium_ ? "#define MEDIUM\n" : "") +
            (has_medium_ && two_fields_ ? "#define TWO_FIELDS\n" : "") +
            (shading_ != Shading::unlit ? "#define LIT\n" : "") +
-           (shading_ == Shading::smooth ? "#define SMOOTH\n" : "") + (needs_order() ? "" : "#define NEAREST\n");
+           (shading_ == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest_ ? "#define NEAREST\n" : "");
 }
 
 // Sets what the variant reads, no more: a uniform that is not read is none.
@@ -105,9 +109,9 @@ void SurfacePass::bind(const Program& program, const CellStream& cells, const Ne
     const auto set = [&](const char* name, double value) { program.set(name, static_cast<float>(value)); };
     if (perspective) set("inverse_far", frame.far);
     if (perspective && has_medium_) set("inverse_near", 1.0 / cells.near_depth());
-    if (!needs_order()) set("inverse_nearest", 1.0 / frame.nearest);
+    if (nearest_) set("inverse_nearest", 1.0 / frame.nearest);
     // Of translucent surfaces alone, unlit or lit by one normal for all of a cell, no place is asked for but that of the eye.
-    if (has_medium_ || !needs_order() || shading_ == Shading::smooth || (perspective && lit)) {
+    if (has_medium_ || nearest_ || shading_ == Shading::smooth || (perspective && lit)) {
         const glm::dvec2 center = transform.principal_point();
         program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
         set("pixels_per_unit", transform.pixels_per_unit());

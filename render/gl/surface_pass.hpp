@@ -3,8 +3,8 @@
 // Isosurfaces in OpenGL (shaders/surfaces.frag): what the scene's surfaces and lights are to the fragments, and how the frame is drawn
 // for them.
 //
-// "Model only what a scene requires": cells that no surface crosses are left out unless their medium is seen; without any medium
-// none is integrated; and opaque surfaces alone are drawn in any order, by a depth test.
+// "Model only what a scene requires" (render/plan.hpp): cells that no surface crosses are left out unless their medium is seen; without any
+// medium none is integrated; and opaque surfaces alone are drawn in any order, by a depth test.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,7 @@
 #include "render/cell_stream.hpp"
 #include "render/gl/objects.hpp"
 #include "render/gl/textures.hpp"
+#include "render/plan.hpp"
 #include "render/renderer.hpp"
 
 namespace cellproj::gl {
@@ -32,14 +33,16 @@ public:
 
     // The same surfaces, mesh and fields.
     bool is_of(const Scene& scene) const;
-    // Which cells are seen without surfaces (PreparedScene::visible of a transfer function), before anything is drawn.
-    void set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible);
+    // What a plan is made from.
+    SceneFacts::Surfaces facts() const;
+    // Which cells are drawn without surfaces (PreparedScene::visible of a transfer function), whether a medium is seen in them, and whether
+    // the plan is to draw the nearest surfaces alone; before anything is drawn.
+    void set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible, bool medium, bool nearest);
 
     const SurfaceCells& cells() const { return cells_; }
     bool has_medium() const { return has_medium_; }
-    bool needs_order() const { return has_medium_ || !opaque_; }
     std::span<const std::uint8_t> drawn() const { return drawn_; }  // #T, not empty
-    ViewOrder any_order() const { return {drawn_items_, {}}; }      // of the cells drawn, when they need none
+    ViewOrder any_order() const { return {drawn_items_, {}}; }      // of the cells drawn, for nearest surfaces
 
     std::string defines(bool perspective) const;
     void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame) const;
@@ -47,7 +50,7 @@ public:
 private:
     Scene scene_;  // its transfer function: the one that `drawn_` is of
     SurfaceCells cells_;
-    bool opaque_, two_fields_, has_medium_ = false;
+    bool opaque_, two_fields_, has_medium_ = false, nearest_ = false;
     Shading shading_;
     Texture list_, lights_;
     std::vector<std::uint8_t> drawn_;
