@@ -137,8 +137,8 @@ TEST_P(PlanOfEither, LightThatNothingAbsorbsNeedsNoOrder) {
 }
 
 TEST_P(PlanOfEither, CellsThatShowNothingAreLeftOut) {
-    const TransferFunction tent(OpticalModel::density, {{0, {0.9, 0.3, 0.1}}}, {{0.55, 0}, {0.6, 20}, {0.65, 0}});
-    const TransferFunction shining(OpticalModel::emitter, {{0.55, {0, 0, 0}}, {0.6, {3, 1, 0}}, {0.65, {0, 0, 0}}}, {{0.3, 2}, {0.32, 0}});
+    const TransferFunction tent(OpticalModel::density, {{0, {0.9, 0.3, 0.1}}}, {{0.85, 0}, {0.9, 20}, {0.95, 0}});
+    const TransferFunction shining(OpticalModel::emitter, {{0.85, {0, 0, 0}}, {0.9, {9, 3, 0}}, {0.95, {0, 0, 0}}}, {{0.1, 2}, {0.12, 0}});
     for (const TransferFunction& transfer : {tent, shining})
         for (const bool surfaces : {false, true}) {
             const Scene scene = surfaces ? with(waves_in(transfer), {{0.5, {1, 0, 0}, 0.4, {}}}) : waves_in(transfer);
@@ -180,6 +180,8 @@ TEST_P(PlanOfEither, OutsideTheViewIsAnEmptyPicture) {
 
 TEST_P(PlanOfEither, ConstantLightNeedsNoTable) {
     const TransferFunction shining(OpticalModel::emitter, {{0, {0.3, 0.6, 0.9}}}, {{0, 2.5}});
+    // At an optical depth of 30 a cell, llvmpipe's two ways to the exponential are 1.3e-6 apart.
+    const double bound = backend() == Backend::cpu ? 1e-6 : 2e-6;
     for (const TransferFunction& transfer : {constant_medium(3), constant_medium(1e-4), constant_medium(400), shining})
         for (const char* method : {"integral", "exact:1e-6", "linear:9", "preint2d-exp:32"}) {
             const Quality quality{.method = parse_method(method)};
@@ -187,7 +189,7 @@ TEST_P(PlanOfEither, ConstantLightNeedsNoTable) {
             const Drawn shortest = draw(scene, quality), general = draw(scene, quality, {.constant_light = false});
             EXPECT_TRUE(starts(chosen(shortest.statistics.plan, "method"), "homogeneous instead of ")) << method;
             EXPECT_EQ(shortest.statistics.method, general.statistics.method);
-            EXPECT_LE(max_difference(shortest.image, general.image), 1e-6) << method;
+            EXPECT_LE(max_difference(shortest.image, general.image), bound) << method;
         }
     // Not what was asked for, which is wrong there in its own way.
     for (const char* method : {"preint2d:32", "preint3d:16", "average", "stein"})

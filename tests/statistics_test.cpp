@@ -31,6 +31,7 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
     picture.order_exact = true;
     picture.order_check = {.rays = 19, .wrong_rays = 20, .wrong_pairs = 21};
     picture.error = 0.25;
+    picture.plan = {{.rule = "order", .chosen = "cells by mpvo", .why = "the medium hides what is behind it"}};
     run.pictures = {picture};
 
     const char* const expected = R"json({
@@ -42,7 +43,8 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
             "method": "preint3d:64", "target": "rgba16f", "table_bytes": 4194304,
             "backend": "gl_osmesa", "backend_version": "4.5 (Core Profile)",
             "order": "mpvo", "order_exact": true, "order_check": {"rays": 19, "wrong_rays": 20, "wrong_pairs": 21},
-            "error": 0.25}],
+            "error": 0.25,
+            "plan": [{"rule": "order", "chosen": "cells by mpvo", "why": "the medium hides what is behind it"}]}],
         "peak_memory_bytes": 123456789012})json";
     EXPECT_EQ(Json::parse(to_json(run)), Json::parse(expected)) << to_json(run);
 }
