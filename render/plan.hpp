@@ -55,10 +55,13 @@ struct Plan {
         by_cells           // cells in an order
     };
     Drawing drawing = Drawing::by_cells;
+    bool nearly_sorted = false;       // by_pixels: the cells that are drawn, by depth in steps, without a sorter
     Method method;                    // by which light of segments is computed
     std::vector<Decision> decisions;  // one for each rule, in the order of the work
 
-    bool sorts() const { return drawing == Drawing::by_pixels || drawing == Drawing::by_cells; }
+    // Whether something hides something, and whether all cells are sorted for that.
+    bool blends() const { return drawing == Drawing::by_pixels || drawing == Drawing::by_cells; }
+    bool sorts() const { return blends() && !nearly_sorted; }
 };
 
 // For all views of a scene. The quality is one that the backend draws.

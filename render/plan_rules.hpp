@@ -22,6 +22,7 @@ struct PlanRules {
     bool culling = true;           // cells that cannot be seen are left out before sorting
     bool nearest_surfaces = true;  // opaque isosurfaces alone: no order
     bool sum = true;               // nothing absorbs: no order
+    bool few_cells = true;         // CPU: few cells are drawn: pixels sort what they meet instead of all cells being sorted
     bool constant_light = true;    // colour and extinction the same everywhere: a closed form instead of the method's tables and pieces
 };
 

@@ -201,6 +201,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
 
     const Stopwatch projecting;
     if (drawing == Drawing::sum) order = prepared_->any_order();
+    if (plan.nearly_sorted) order.items = mesh_.nearly_sorted(prepared_->any_order().items);
     // In any order; nearly sorted ones hide most of each other.
     if (drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(prepared_->surfaces()->crossed());
     const auto items = mesh_.cut(order);
@@ -211,7 +212,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     for (int y = 0; y < size.height; y += first.height)
         for (int x = 0; x < size.width; x += first.width) {
             const Region region = region_at(x, y);
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, plan.sorts() && may_be_opaque());
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, plan.blends() && may_be_opaque());
             draw(image, region, drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }
