@@ -92,8 +92,8 @@ LitCorner mix(const LitCorner& a, const LitCorner& b, double t) {
 
 }  // namespace
 
-CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size, std::span<const std::uint8_t> drawn)
-    : prepared_(prepared), drawn_(drawn.empty() ? std::span<const std::uint8_t>(prepared.visible()) : drawn), eye_(camera.eye),
+CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size)
+    : prepared_(prepared), eye_(camera.eye),
       transform_(relative_transform(camera, size, prepared.units().length)),
       near_depth_(near_plane_depth(camera, prepared.units().length)) {
     const glm::dvec2 picture(size.width, size.height);
@@ -127,7 +127,8 @@ CellStream::CellStream(const PreparedScene& prepared, const Camera& camera, Imag
 // whether anything was drawn.
 template <class Vertex, class Draw>
 void CellStream::for_each_piece(const ViewOrder& order, Triangles<Vertex>& batch, Draw draw) const {
-    const auto cells = static_cast<std::uint32_t>(drawn_.size());
+    const std::vector<std::uint8_t>& visible = prepared_.visible();
+    const auto cells = static_cast<std::uint32_t>(visible.size());
     const auto draw_clipped = [&](CellId cell, const EyeCorners& corners) {
         const Pieces pieces = clipped(corners);
         bool drawn = false;
@@ -137,10 +138,10 @@ void CellStream::for_each_piece(const ViewOrder& order, Triangles<Vertex>& batch
     for (const std::uint32_t item : order.items) {
         if (item >= cells) {
             const CellPiece& piece = order.pieces[item - cells];
-            if (drawn_[piece.cell] && draw_clipped(piece.cell, eye_corners(piece))) batch.drawn_split_cells.push_back(piece.cell);
+            if (visible[piece.cell] && draw_clipped(piece.cell, eye_corners(piece))) batch.drawn_split_cells.push_back(piece.cell);
             continue;
         }
-        if (!drawn_[item]) continue;
+        if (!visible[item]) continue;
         Corners corners;
         if (load(item, corners) ? draw(item, corners) : draw_clipped(item, eye_corners(item))) ++batch.drawn_cells;
     }
@@ -158,11 +159,8 @@ void CellStream::project(const ViewOrder& order, const VertexLighting& lighting,
     for_each_piece(order, batch, [&](CellId, const Corners& corners) { return light_corners(corners, lighting, batch); });
 }
 
-void CellStream::project(const ViewOrder& order, const SurfaceCells& surfaces, const NearnessFrame& frame,
-                         SurfaceBatch& batch) const {
-    for_each_piece(order, batch, [&](CellId cell, const Corners& corners) {
-        return project_surfaces(cell, corners, surfaces, frame, batch);
-    });
+void CellStream::project(const ViewOrder& order, const NearnessFrame& frame, SurfaceBatch& batch) const {
+    for_each_piece(order, batch, [&](CellId cell, const Corners& corners) { return project_surfaces(cell, corners, frame, batch); });
 }
 
 NearnessFrame CellStream::nearness_frame() const {
@@ -363,8 +361,7 @@ bool CellStream::append_silhouette(Maker& make, const Rectangle& box, Triangles<
 // As VertexMaker, for the vertices of isosurfaces.
 class CellStream::SurfaceMaker {
 public:
-    SurfaceMaker(const CellStream& stream, CellId cell, const Corners& corners, const SurfaceCells& surfaces,
-                 const NearnessFrame& frame)
+    SurfaceMaker(const CellStream& stream, CellId cell, const Corners& corners, const NearnessFrame& frame)
         : stream_(stream), outline_(make_outline(corners.vertices, stream.transform_.perspective())) {
         if (outline_.triangle_count == 0) return;
         std::array<double, 4> scalars;
@@ -380,19 +377,21 @@ public:
             scalars_[c] = static_cast<float>(scalars[c]);
         }
         const CellSpan span = stream.span_of(corners.vertices);
-        const SurfaceCells::Range range = surfaces.between(std::ranges::min(scalars_), std::ranges::max(scalars_));
-        vertex_.first = static_cast<float>(range.first);
-        vertex_.last = static_cast<float>(range.last);
+        const PreparedSurfaces& surfaces = *stream.prepared_.surfaces();
+        const std::int32_t first = level_of(surfaces.thresholds(), std::ranges::min(scalars_));
+        const std::int32_t last = level_of(surfaces.thresholds(), std::ranges::max(scalars_));
+        vertex_.first = static_cast<float>(first);
+        vertex_.last = static_cast<float>(last);
         vertex_.depth_range = static_cast<float>(outline_.base_is_front ? span.far - span.near : span.near - span.far);
         const auto places_before = places_of(corners, 1.0, frame);
         if (!stream.opacity_scalars_.empty()) set_opacity(places_before, corners, frame);
         const AffineMap<double> scalar = make_scalar_map(places_before, scalars);
         vertex_.maps[0].scalar = static_cast<float>(scalar.value);
         for (std::size_t slope = 0; slope < 3; ++slope) vertex_.maps[slope + 1].scalar = static_cast<float>(scalar.slopes[slope]);
-        if (range.first == range.last) return;
+        if (first == last) return;
         // Of a piece of a cell, the cell's corners may lie where nothing is on the screen.
         const auto places = corners.whole ? places_of(corners, 0.0, frame) : places_of(cell, frame);
-        const AffineMap<glm::dvec3> gradient = make_gradient_map(places, surfaces.gradients(cell));
+        const AffineMap<glm::dvec3> gradient = make_gradient_map(places, gradients(surfaces, cell));
         for (int axis = 0; axis < 3; ++axis) {
             vertex_.maps[0].gradient[axis] = static_cast<float>(gradient.value[axis]);
             for (std::size_t slope = 0; slope < 3; ++slope)
@@ -444,6 +443,16 @@ private:
         return places;
     }
 
+    // At the cell's corners: its own four times (flat), those of its points (smooth), 0 (unlit).
+    std::array<glm::dvec3, 4> gradients(const PreparedSurfaces& surfaces, CellId cell) const {
+        std::array<glm::dvec3, 4> result{};
+        const Shading shading = surfaces.scene().shading;
+        const auto& corners = stream_.prepared_.scene().mesh->tets[cell];
+        for (std::size_t corner = 0; corner < 4 && shading != Shading::unlit; ++corner)
+            result[corner] = surfaces.gradients()[shading == Shading::flat ? cell : corners[corner]];
+        return result;
+    }
+
     void set_opacity(const std::array<glm::dvec3, 4>& places, const Corners& corners, const NearnessFrame& frame) {
         std::array<double, 4> scalars;
         for (std::size_t c = 0; c < 4; ++c)
@@ -462,11 +471,10 @@ private:
     SurfaceVertex vertex_{};
 };
 
-bool CellStream::project_surfaces(CellId cell, const Corners& corners, const SurfaceCells& surfaces, const NearnessFrame& frame,
-                                  SurfaceBatch& batch) const {
+bool CellStream::project_surfaces(CellId cell, const Corners& corners, const NearnessFrame& frame, SurfaceBatch& batch) const {
     const Rectangle box = bounding_box(corners.vertices);
     if (!covers_pixel(box)) return false;
-    SurfaceMaker make(*this, cell, corners, surfaces, frame);
+    SurfaceMaker make(*this, cell, corners, frame);
     return append_silhouette(make, box, batch);
 }
 

@@ -14,7 +14,6 @@
 #include "project/clip.hpp"
 #include "project/silhouette.hpp"
 #include "render/prepared_scene.hpp"
-#include "render/surface_cells.hpp"
 #include "render/surface_vertex.hpp"
 
 namespace cellproj {
@@ -71,8 +70,8 @@ using SurfaceBatch = Triangles<SurfaceVertex>;
 // The mesh as one camera sees it. Every point is transformed once.
 class CellStream {
 public:
-    // `drawn`: #T, 0 for cells to leave out, must outlive this; empty: those that `prepared` says are visible.
-    CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size, std::span<const std::uint8_t> drawn = {});
+    // Of the cells that `prepared` says are visible.
+    CellStream(const PreparedScene& prepared, const Camera& camera, ImageSize size);
 
     // Appends the triangles of cells and pieces of cells, in their order. Those that cannot be seen, lie outside the view, or fall
     // between pixel centres add nothing.
@@ -81,8 +80,8 @@ public:
     void project(const ViewOrder& order, TwoFieldBatch& batch) const;
     // The same as the classical split, with light at its vertices.
     void project(const ViewOrder& order, const VertexLighting& lighting, LitBatch& batch) const;
-    // The same with what cuts segments at isosurfaces; `frame` is nearness_frame().
-    void project(const ViewOrder& order, const SurfaceCells& surfaces, const NearnessFrame& frame, SurfaceBatch& batch) const;
+    // The same of a scene with isosurfaces, with what cuts segments at them; `frame` is nearness_frame().
+    void project(const ViewOrder& order, const NearnessFrame& frame, SurfaceBatch& batch) const;
 
     // From all points before the near plane.
     NearnessFrame nearness_frame() const;
@@ -132,8 +131,7 @@ private:
     template <class Vertex>
     bool project_corners(const Corners& corners, Triangles<Vertex>& batch) const;
     class SurfaceMaker;
-    bool project_surfaces(CellId cell, const Corners& corners, const SurfaceCells& surfaces, const NearnessFrame& frame,
-                          SurfaceBatch& batch) const;
+    bool project_surfaces(CellId cell, const Corners& corners, const NearnessFrame& frame, SurfaceBatch& batch) const;
     template <class Maker, class Vertex>
     bool append_silhouette(Maker& make, const Rectangle& box, Triangles<Vertex>& batch) const;
     // Of a cell, in lengths and normalized scalars.
@@ -151,7 +149,6 @@ private:
     void set_place(const SilhouetteVertex& v, Vertex& vertex) const;
 
     const PreparedScene& prepared_;
-    std::span<const std::uint8_t> drawn_;
     glm::dvec3 eye_;
     ScreenTransform transform_;         // in the units of the scene, about the eye
     double near_depth_;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <cmath>
 #include <utility>
 
 #include "mesh/error.hpp"
@@ -34,12 +34,16 @@ Decision decide_cells(const SceneFacts& facts, const PlanRules& rules) {
 struct OrderChoice {
     Drawing drawing;
     Decision decision;
-    bool nearly_sorted = false;
+    bool few_cells = false;
 };
 
-// Sorting takes all cells, seen or not, as those in between tell which of two is in front; pixels sort what they meet. Measured at 1.5M cells
-// (apps/bench/plan.cpp): SHARES.
-constexpr std::size_t few = 8;
+// Sorting takes all cells, seen or not, as those in between tell which of two is in front; pixels sort what they meet, at a higher price.
+// Measured (apps/bench/plan.cpp, 0.2M and 1.5M cells): prices are even at about two fragments for each cell of the mesh; never beyond the share
+// that keeps a scene's cells from being sorted for nothing.
+constexpr std::size_t few_cells_share = 8;
+constexpr double few_fragments_per_cell = 2.0;
+
+std::size_t drawn_at_most(const SceneFacts& facts) { return facts.medium + (facts.surfaces ? facts.surfaces->crossed : 0); }
 
 OrderChoice decide_order(const SceneFacts& facts, const Quality& quality, Backend backend, const PlanRules& rules) {
     const auto choose = [](Drawing drawing, std::string chosen, std::string why) {
@@ -48,8 +52,8 @@ OrderChoice decide_order(const SceneFacts& facts, const Quality& quality, Backen
     if (!facts.seen() && rules.nothing_seen)
         return choose(Drawing::nothing, "none: an empty picture at once", "no cell shows anything");
     const bool surfaces_alone = facts.surfaces && facts.medium == 0;
-    // The CPU backend tells surfaces in jumps of the scalar from the sequence of cells.
-    const bool unseen_jump = backend == Backend::cpu && facts.surfaces && facts.surfaces->jump;
+    // Surfaces in jumps of the scalar are told from the sequence of cells.
+    const bool unseen_jump = facts.surfaces && facts.surfaces->jump;
     if (surfaces_alone && facts.surfaces->opaque && !unseen_jump && rules.nearest_surfaces)
         return choose(Drawing::nearest_surfaces, "none: the nearest surface of each pixel", "all isosurfaces are opaque and no medium is seen");
     if (!facts.surfaces && !facts.absorbs && rules.sum)
@@ -60,13 +64,10 @@ OrderChoice decide_order(const SceneFacts& facts, const Quality& quality, Backen
                                                : "isosurfaces are translucent";
     if (quality.order_per_pixel) return choose(Drawing::by_pixels, "by each pixel", why + "; asked for");
     if (quality.order) return choose(Drawing::by_cells, "cells by " + to_string(*quality.order), why + "; asked for");
-    const std::size_t drawn = facts.medium + (facts.surfaces ? facts.surfaces->crossed : 0);
-    if (rules.few_cells && backend == Backend::cpu && !unseen_jump && quality.check_rays == 0 && drawn <= facts.cells / few) {
-        OrderChoice by_pixels = choose(Drawing::by_pixels, "by each pixel", why + "; few cells are drawn: what a pixel meets is sorted sooner than all cells");
-        by_pixels.nearly_sorted = true;
-        return by_pixels;
-    }
-    return choose(Drawing::by_cells, "cells, exactly for this mesh", why);
+    OrderChoice exact = choose(Drawing::by_cells, "cells, exactly for this mesh", why);
+    exact.few_cells = rules.few_cells && backend == Backend::cpu && !unseen_jump && quality.check_rays == 0 &&
+                      drawn_at_most(facts) <= facts.cells / few_cells_share;
+    return exact;
 }
 
 // Methods that give the closed form of a homogeneous segment where colour and extinction are constant, within the rounding of float32. The
@@ -131,7 +132,7 @@ Plan plan_scene(const SceneFacts& facts, const Quality& quality, Backend backend
     result.decisions.push_back(decide_cells(facts, rules));
     OrderChoice order = decide_order(facts, quality, backend, rules);
     result.drawing = order.drawing;
-    result.nearly_sorted = order.nearly_sorted;
+    result.few_cells = order.few_cells;
     result.decisions.push_back(std::move(order.decision));
     result.decisions.push_back(decide_method(facts, quality, rules, result.method));
     result.decisions.push_back(decide_field(facts));
@@ -144,6 +145,12 @@ Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSi
         plan.decisions.push_back({"projection", "parallel", "depth and scalar are affine on the screen: no division at a pixel"});
     } else {
         plan.decisions.push_back({"projection", "perspective", "the eye is at a place: 1/depth is affine on the screen"});
+    }
+    if (plan.few_cells && expected_fragments(facts, drawn_at_most(facts), camera, size) <= few_fragments_per_cell * static_cast<double>(facts.cells)) {
+        plan.drawing = Drawing::by_pixels;
+        const auto order = std::ranges::find(plan.decisions, "order", &Decision::rule);
+        order->chosen = "by each pixel";
+        order->why += "; few cells are drawn: what a pixel meets is sorted sooner than all cells";
     }
     if (rules.empty_view && outside_view(facts.box, camera, size)) {
         plan.drawing = Plan::Drawing::nothing;
@@ -160,6 +167,17 @@ Plan plan(const Scene& scene, const Camera& camera, ImageSize size, const Qualit
     require_drawn(backend, quality, fields_read(scene));
     const SceneFacts facts = PreparedScene(scene).facts();
     return plan_view(plan_scene(facts, quality, backend), facts, camera, size);
+}
+
+double expected_fragments(const SceneFacts& facts, std::size_t cells, const Camera& camera, ImageSize size) {
+    const double unit = std::max(facts.box.diagonal() / 2, 1e-300);
+    const ScreenTransform transform = relative_transform(camera, size, unit);
+    const glm::dvec3 edge = (facts.box.high - facts.box.low) / unit;
+    const double volume = edge.x * edge.y * edge.z / static_cast<double>(std::max<std::size_t>(facts.cells, 1));
+    const double area = 1.8 * std::cbrt(volume * volume);  // a regular tetrahedron's surface is 7.2 V^(2/3)
+    const double depth = transform.to_eye((facts.box.center() - camera.eye) / unit).z;
+    const double scale = transform.pixels_per_unit() / (transform.perspective() ? std::max(depth, near_plane_depth(camera, unit)) : 1.0);
+    return static_cast<double>(cells) * area * scale * scale;
 }
 
 // Half-spaces through the eye (perspective) or along the view (parallel), a pixel wider than the picture, so that rounding drops nothing.

@@ -55,13 +55,13 @@ struct Plan {
         by_cells           // cells in an order
     };
     Drawing drawing = Drawing::by_cells;
-    bool nearly_sorted = false;       // by_pixels: the cells that are drawn, by depth in steps, without a sorter
+    bool few_cells = false;           // are drawn: pixels may sort what they meet; in by_pixels of a view they do, without a sorter
     Method method;                    // by which light of segments is computed
     std::vector<Decision> decisions;  // one for each rule, in the order of the work
 
     // Whether something hides something, and whether all cells are sorted for that.
     bool blends() const { return drawing == Drawing::by_pixels || drawing == Drawing::by_cells; }
-    bool sorts() const { return blends() && !nearly_sorted; }
+    bool sorts() const { return blends() && !(drawing == Drawing::by_pixels && few_cells); }
 };
 
 // For all views of a scene. The quality is one that the backend draws.
@@ -71,6 +71,10 @@ Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSi
 
 // All of it, from the scene itself. Throws Error as `Renderer::render` does.
 Plan plan(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Backend backend);
+
+// How many segments the rays of the picture have in `cells` of the scene's cells, were they all alike: the mean area of a cell on the
+// screen (a regular one's, a quarter of its surface by Cauchy's formula) where the middle of the mesh is. 0 or more.
+double expected_fragments(const SceneFacts& facts, std::size_t cells, const Camera& camera, ImageSize size);
 
 // Whether no ray of the view meets the box, told from the box's corners: true only where it is so.
 bool outside_view(const Bounds& box, const Camera& camera, ImageSize size);

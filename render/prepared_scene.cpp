@@ -169,16 +169,17 @@ std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& uni
 
 }  // namespace
 
-PreparedScene::PreparedScene(Scene scene, const PlanRules& rules)
+PreparedScene::PreparedScene(Scene scene, double surface_margin, const PlanRules& rules)
     : scene_(std::move(scene)), units_(find_units(scene_)), culling_(rules.culling),
       bins_(find_bins(main_field(scene_, units_))),
-      opacity_bins_(scene_.opacity_field ? find_bins(opacity_field(scene_, units_)) : std::vector<BinRange>{}) {
+      opacity_bins_(scene_.opacity_field ? find_bins(opacity_field(scene_, units_)) : std::vector<BinRange>{}),
+      surface_margin_(surface_margin) {
     facts_.box = bounds(scene_.mesh->points);
     facts_.cells = bins_.size();
     facts_.location = scene_.field->location;
     facts_.fields = fields_read(scene_);
     for (std::size_t cell = 0; cell < bins_.size(); ++cell) facts_.not_finite += !finite(cell);
-    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_);
+    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, surface_margin_);
     find_visible_cells();
 }
 
@@ -241,9 +242,9 @@ void PreparedScene::set_surfaces(std::shared_ptr<const SurfaceScene> surfaces) {
     Scene changed = scene_;
     changed.surfaces = std::move(surfaces);
     validate(changed);
-    surfaces_.reset();
+    const std::optional<PreparedSurfaces> before = std::exchange(surfaces_, std::nullopt);
     scene_ = std::move(changed);
-    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_);
+    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, surface_margin_, before ? &*before : nullptr);
     find_visible_cells();
 }
 

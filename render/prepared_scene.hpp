@@ -36,8 +36,10 @@ private:
 
 class PreparedScene {
 public:
-    // Throws Error (data) when the field does not fit the mesh or has no finite value. Only `culling` of the rules counts here.
-    explicit PreparedScene(Scene scene, const PlanRules& rules = {});
+    // Throws Error (data) when the field does not fit the mesh or has no finite value.
+    //
+    // `surface_margin`: how far below an isovalue its surface begins (PreparedSurfaces). Of the rules only `culling` counts here.
+    explicit PreparedScene(Scene scene, double surface_margin = 0.0, const PlanRules& rules = {});
 
     const Scene& scene() const { return scene_; }
     const SceneUnits& units() const { return units_; }
@@ -89,6 +91,7 @@ private:
     std::optional<double> mean_chord_;  // once somebody has asked
     std::unique_ptr<const RayIndex> ray_index_;  // once an order was to be judged
     std::vector<BinRange> bins_, opacity_bins_;  // #T; none without an opacity field
+    double surface_margin_;
     std::optional<PreparedSurfaces> surfaces_;
     std::vector<std::uint8_t> visible_;
     std::vector<CellId> any_order_;  // once somebody has asked

@@ -8,6 +8,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -23,14 +24,21 @@ float normalized(const SceneUnits& units, double value) {
     return static_cast<float>(std::clamp(units.normalized(value), -1.0, 2.0));
 }
 
+// Scalars lie in 0 .. 1: what is not met there stands well outside.
+float threshold_of(const SceneUnits& units, double value, double margin) {
+    if (value <= units.scalar_low) return -1.0F;
+    if (value > units.scalar_high) return 2.0F;
+    return static_cast<float>(units.normalized(value) - margin);
+}
+
 std::vector<std::int32_t> find_levels(const TetMesh& mesh, const ScalarField& field, const SceneUnits& units,
-                                      std::span<const float> values) {
+                                      std::span<const float> thresholds) {
     std::vector<std::int32_t> of_points(mesh.points.size()), levels(mesh.tets.size());
     using Range = oneapi::tbb::blocked_range<std::size_t>;
     oneapi::tbb::parallel_for(Range(0, of_points.size(), 4096), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             const double s = field.values[i];
-            of_points[i] = std::isfinite(s) ? level_of(values, normalized(units, s)) : PreparedSurfaces::no_scalar;
+            of_points[i] = std::isfinite(s) ? level_of(thresholds, normalized(units, s)) : PreparedSurfaces::no_scalar;
         }
     });
     oneapi::tbb::parallel_for(Range(0, levels.size(), 4096), [&](const Range& range) {
@@ -80,31 +88,42 @@ std::vector<glm::vec3> over_the_steepest(const std::vector<glm::dvec3>& gradient
 
 }  // namespace
 
-PreparedSurfaces::PreparedSurfaces(const Scene& scene, const SceneUnits& units) : scene_(scene.surfaces.get()) {
+PreparedSurfaces::PreparedSurfaces(const Scene& scene, const SceneUnits& units, double margin, const PreparedSurfaces* before)
+    : scene_(scene.surfaces.get()) {
     assert(has_surfaces(scene) && scene.field->location == FieldLocation::points);
-    for (const IsoSurface& surface : scene_->isosurfaces.surfaces()) values_.push_back(normalized(units, surface.value));
-    levels_ = find_levels(*scene.mesh, *scene.field, units, values_);
+    for (const IsoSurface& surface : scene_->isosurfaces.surfaces()) {
+        values_.push_back(normalized(units, surface.value));
+        thresholds_.push_back(threshold_of(units, surface.value, margin));
+    }
+    levels_ = find_levels(*scene.mesh, *scene.field, units, thresholds_);
     for (CellId cell = 0; cell < levels_.size(); ++cell)
         if (levels_[cell] == crossed_cell) crossed_.push_back(cell);
-
-    const Gradients of_cells = cell_gradients(*scene.mesh, *scene.field);
-    if (of_cells.undefined > 0) find_jumps(scene, units, of_cells.values);
-    if (scene_->shading == Shading::flat) gradients_ = over_the_steepest(of_cells.values);
-    if (scene_->shading == Shading::smooth) gradients_ = over_the_steepest(vertex_gradients(*scene.mesh, *scene.field).values);
+    of_field_ = before && before->of_field_->shading == scene_->shading ? before->of_field_ : find_gradients(scene);
+    find_jumps(scene, units);
 }
 
-// A flat cell has the gradient 0, and so have others.
-void PreparedSurfaces::find_jumps(const Scene& scene, const SceneUnits& units, const std::vector<glm::dvec3>& gradients) {
+std::shared_ptr<const PreparedSurfaces::OfField> PreparedSurfaces::find_gradients(const Scene& scene) {
     const TetMesh& mesh = *scene.mesh;
-    const auto flat = [&](CellId cell) { return gradients[cell] == glm::dvec3(0) && is_flat(mesh, cell); };
+    OfField found{.shading = scene.surfaces->shading, .gradients = {}, .flat_cells = {}};
+    const Gradients of_cells = cell_gradients(mesh, *scene.field);
+    // A flat cell has the gradient 0, and so have others.
+    for (CellId cell = 0; of_cells.undefined > 0 && cell < mesh.tets.size(); ++cell)
+        if (of_cells.values[cell] == glm::dvec3(0) && is_flat(mesh, cell)) found.flat_cells.push_back(cell);
+    if (found.shading == Shading::flat) found.gradients = over_the_steepest(of_cells.values);
+    if (found.shading == Shading::smooth) found.gradients = over_the_steepest(vertex_gradients(mesh, *scene.field).values);
+    return std::make_shared<const OfField>(std::move(found));
+}
+
+void PreparedSurfaces::find_jumps(const Scene& scene, const SceneUnits& units) {
+    const TetMesh& mesh = *scene.mesh;
     // Within 1e-6 of the field's range float32 loses surfaces at points as well.
-    jump_ = std::ranges::any_of(
-        crossed_, [&](CellId cell) { return flat(cell) && jump_in(mesh, *scene.field, units, cell) > 1e-6; });
+    jump_ = std::ranges::any_of(of_field_->flat_cells, [&](CellId cell) {
+        return levels_[cell] == crossed_cell && jump_in(mesh, *scene.field, units, cell) > 1e-6;
+    });
     if (!jump_) return;
     std::vector<std::uint8_t> touched(mesh.points.size());
-    for (CellId cell = 0; cell < mesh.tets.size(); ++cell)
-        if (flat(cell))
-            for (const VertexId v : mesh.tets[cell]) touched[v] = 1;
+    for (const CellId cell : of_field_->flat_cells)
+        for (const VertexId v : mesh.tets[cell]) touched[v] = 1;
     for (CellId cell = 0; cell < mesh.tets.size(); ++cell)
         if (levels_[cell] >= 0 && std::ranges::any_of(mesh.tets[cell], [&](VertexId v) { return touched[v] != 0; }))
             beside_jumps_.push_back(cell);

@@ -3,12 +3,16 @@
 // What backends need of isosurfaces and no view changes: on which side of which surfaces every cell lies, and the gradients that
 // shading takes for normals.
 //
-// Sides are told by the scalars that are drawn, normalized to the field's range and rounded to float32, and isovalues are rounded
-// in the same way: a point whose scalar is the isovalue stays on it (classify/isosurface.hpp: not below).
+// This is the one place that says which cells an isovalue crosses. Sides are told by the scalars that are drawn, normalized to the
+// field's range and rounded to float32, against the *threshold* of each isovalue, rounded in the same way: a point whose scalar is the
+// isovalue stays on it (classify/isosurface.hpp: not below). A threshold is the isovalue less the backend's margin. No bins and no
+// span space: one search of the list for each point and one look at each cell, whatever the number of surfaces, cost less than the
+// gradients do (render/README.md).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,18 +26,25 @@ namespace cellproj {
 struct Scene;
 struct SceneUnits;
 
-// The level of a scalar: how many isovalues it is not below, 0 .. #values. A segment crosses the surfaces between the levels of its
+// For backends whose scalars on a face are float32: more than their rounding. So places whose scalar is the isovalue (points, edges
+// and cells that hold it, as those of regular grids often do) are all on one side, whichever face tells. [field ranges]
+inline constexpr double float32_margin = 0x1p-21;
+
+// The level of a scalar: how many thresholds it is not below, 0 .. #values. A segment crosses the surfaces between the levels of its
 // ends; a cell whose scalars have one level is crossed by none, whatever rounding does to scalars inside.
 class PreparedSurfaces {
 public:
     static constexpr std::int32_t crossed_cell = -1, no_scalar = -2;
 
-    // Of a scene that has_surfaces; the scene's field must outlive it.
-    PreparedSurfaces(const Scene& scene, const SceneUnits& units);
+    // Of a scene that has_surfaces; the scene's field must outlive it. `before`: of the same mesh and field, whose gradients serve again;
+    // or null.
+    PreparedSurfaces(const Scene& scene, const SceneUnits& units, double margin = 0.0, const PreparedSurfaces* before = nullptr);
 
     const SurfaceScene& scene() const { return *scene_; }
     // Normalized, ascending; equal where float32 cannot tell two isovalues apart.
     std::span<const float> values() const { return values_; }
+    // Of their sides: less by the margin; where the field does not reach the isovalue, well outside of 0..1. Ascending.
+    std::span<const float> thresholds() const { return thresholds_; }
 
     // #T: the level of all scalars of the cell, crossed_cell where its points have several, no_scalar where one is not finite.
     std::span<const std::int32_t> levels() const { return levels_; }
@@ -45,18 +56,26 @@ public:
     bool jump() const { return jump_; }
 
     // In the axes of the mesh, over the steepest: #T (flat), #P (smooth) or none (unlit). 0 where there is none.
-    std::span<const glm::vec3> gradients() const { return gradients_; }
+    std::span<const glm::vec3> gradients() const { return of_field_->gradients; }
 
 private:
-    void find_jumps(const Scene& scene, const SceneUnits& units, const std::vector<glm::dvec3>& gradients);
+    // What isovalues do not change.
+    struct OfField {
+        Shading shading;
+        std::vector<glm::vec3> gradients;
+        std::vector<CellId> flat_cells;
+    };
+
+    static std::shared_ptr<const OfField> find_gradients(const Scene& scene);
+    void find_jumps(const Scene& scene, const SceneUnits& units);
 
     const SurfaceScene* scene_;
-    std::vector<float> values_;
+    std::vector<float> values_, thresholds_;
     std::vector<std::int32_t> levels_;
     std::vector<CellId> crossed_;
     std::vector<CellId> beside_jumps_;
     bool jump_ = false;
-    std::vector<glm::vec3> gradients_;
+    std::shared_ptr<const OfField> of_field_;
 };
 
 // How many of `values`, ascending, s is not below.

@@ -233,7 +233,7 @@ TEST(GlSurfaces, OfTheFlowAroundASphere) {
 }
 
 // Isovalues that points have, and thereby edges and faces; rays from above run along edges of the boxes' diagonals. A surface counts as
-// lying 2⁻²¹ of the range below its isovalue (surface_cells.hpp), so the truth is that of such surfaces: where a ray touches a scalar and
+// lying 2⁻²¹ of the range below its isovalue (prepared_surfaces.hpp), so the truth is that of such surfaces: where a ray touches a scalar and
 // turns back, and where it enters the mesh at one, the rule of classify/isosurface.hpp leaves either open to rounding.
 TEST(GlSurfaces, AtTheValuesOfPoints) {
     std::mt19937_64 random(31);

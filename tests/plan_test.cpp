@@ -149,6 +149,37 @@ TEST_P(PlanOfEither, CellsThatShowNothingAreLeftOut) {
         }
 }
 
+// Of a mesh with so many cells that few pixels see one of them. Few cells: a tent, translucent surfaces, both.
+TEST_P(PlanOfEither, FewCellsAreSortedByPixels) {
+    const TransferFunction tent(OpticalModel::density, {{0, {0.9, 0.3, 0.1}}}, {{0.93, 0}, {0.96, 40}, {0.99, 0}});
+    const Scene fine = scene_of(grid_mesh(sanitized ? 10 : 20, 0.2), waves, tent);
+    Scene surface = with(fine, {{0.95, {1, 0, 0}, 0.4, {}}});
+    const Scene both = surface;
+    surface.transfer = std::make_shared<TransferFunction>(nothing());
+    for (const Scene& scene : {fine, surface, both}) {
+        const Drawn shortest = draw(scene), general = draw(scene, {}, {.few_cells = false});
+        EXPECT_EQ(shortest.statistics.order == "pixel", backend() == Backend::cpu) << shortest.statistics.counts.drawn << " of " << scene.mesh->tets.size();
+        EXPECT_NE(general.statistics.order, "pixel");
+        EXPECT_GT(brightest(shortest.image), 0.1);
+        EXPECT_LE(max_difference(shortest.image, general.image), 1e-6);
+    }
+}
+
+// Fragments of a picture of all cells are as many as expected, within what cells differ by.
+TEST(Plan, ExpectsAsManyFragmentsAsThereAre) {
+    const Scene scene = scene_of(grid_mesh(boxes, 0.2), waves, ramp());
+    for (const Projection projection : {Projection::parallel, Projection::perspective})
+        for (const int side : {100, 300}) {
+            const Camera camera = view_of_unit_cube(projection);
+            Statistics statistics;
+            make_renderer(Backend::cpu)->render(scene, camera, {side, side}, {}, &statistics);
+            const std::size_t cells = scene.mesh->tets.size();
+            const double expected = expected_fragments({.box = bounds(scene.mesh->points), .cells = cells}, cells, camera, {side, side});
+            EXPECT_GT(static_cast<double>(statistics.counts.fragments), 0.7 * expected);
+            EXPECT_LT(static_cast<double>(statistics.counts.fragments), 1.6 * expected);  // Kuhn's tetrahedra have more surface than regular ones
+        }
+}
+
 TEST_P(PlanOfEither, NothingToSeeIsAnEmptyPicture) {
     const Scene missed = with(waves_in(nothing()), {{7.0, {1, 0, 0}, 1, {}}});
     for (const Scene& scene : {waves_in(nothing()), missed}) {

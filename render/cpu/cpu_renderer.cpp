@@ -125,7 +125,7 @@ void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
         classification_.reset();
-        prepared_.emplace(scene, rules_);
+        prepared_.emplace(scene, 0.0, rules_);
         mesh_.set_scene(*prepared_);
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
@@ -139,7 +139,7 @@ void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
         mesh_.set_surfaces();  // with or without a medium
     }
     plan_ = plan_scene(prepared_->facts(), quality, Backend::cpu, rules_);
-    if (plan_.sorts()) prepared_->sorter();
+    if (plan_.sorts() && !plan_.few_cells) prepared_->sorter();
     prepare_method(plan_.method, *scene.transfer, same_transfer);
 }
 
@@ -201,7 +201,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
 
     const Stopwatch projecting;
     if (drawing == Drawing::sum) order = prepared_->any_order();
-    if (plan.nearly_sorted) order.items = mesh_.nearly_sorted(prepared_->any_order().items);
+    if (plan.blends() && !plan.sorts()) order.items = mesh_.nearly_sorted(prepared_->any_order().items);
     // In any order; nearly sorted ones hide most of each other.
     if (drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(prepared_->surfaces()->crossed());
     const auto items = mesh_.cut(order);

@@ -116,26 +116,15 @@ void GlRenderer::prepare_here(const Scene& scene, const Quality& quality) {
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
-        Scene medium = scene;  // surfaces are prepared apart: others of them leave the rest as it is
-        medium.surfaces = nullptr;
-        prepared_.emplace(std::move(medium), rules_);
+        surfaces_.reset();
+        prepared_.emplace(scene, float32_margin, rules_);
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
     prepare_surfaces(scene);
-    plan_ = plan_scene(facts(), quality, Backend::gl_osmesa, rules_);
-    if (surfaces_) {
-        const bool nearest = plan_.drawing == Plan::Drawing::nearest_surfaces;
-        surfaces_->set_visible(scene.transfer, prepared_->visible(), prepared_->has_medium(), nearest);
-    }
+    plan_ = plan_scene(prepared_->facts(), quality, Backend::gl_osmesa, rules_);
     if (plan_.sorts()) prepared_->sorter();
     if (!same_transfer || !(shader_ || lighting_) || method_ != plan_.method) prepare_light(scene, plan_.method, same_cells);
-}
-
-SceneFacts GlRenderer::facts() const {
-    SceneFacts facts = prepared_->facts();
-    if (surfaces_) facts.surfaces = surfaces_->facts();
-    return facts;
 }
 
 // The method's tables; without any where that fails, so that the next call makes them.
@@ -161,15 +150,11 @@ void GlRenderer::prepare_light(const Scene& scene, const Method& method, bool sa
 }
 
 void GlRenderer::prepare_surfaces(const Scene& scene) {
-    if (!SurfacePass::is_needed(scene)) {
+    if (prepared_->scene().surfaces != scene.surfaces) {
+        prepared_->set_surfaces(scene.surfaces);
         surfaces_.reset();
-        return;
     }
-    if (!surfaces_ || !surfaces_->is_of(scene)) {
-        surfaces_.reset();  // none of another scene behind a failure
-        validate(scene);
-        surfaces_ = std::make_unique<SurfacePass>(scene, prepared_->units());
-    }
+    if (!surfaces_ && has_surfaces(scene)) surfaces_ = std::make_unique<SurfacePass>(*prepared_);
 }
 
 const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
@@ -187,7 +172,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     validate(size, "size");
     const CurrentContext current(*context_);
     prepare_here(scene, quality);
-    const Plan plan = plan_view(plan_, facts(), camera, size, rules_);
+    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, rules_);
     statistics.ms.plan = total.ms();
     if (plan.drawing == Plan::Drawing::nothing) {
         Image image(size.width, size.height);
@@ -205,12 +190,12 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     statistics.ms.sort = sort.ms();
 
     const Stopwatch transform;
-    const CellStream cells(*prepared_, camera, size, surfaces_ ? surfaces_->drawn() : std::span<const std::uint8_t>{});
+    const CellStream cells(*prepared_, camera, size);
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
     nearest ? set_depth_test() : set_blending();
     if (surfaces_) {
-        draw_surfaces(cells, order, statistics);
+        draw_surfaces(cells, order, nearest, statistics);
     } else {
         lighting_ ? draw_lit(cells, order, statistics) : draw_segments(cells, order, statistics);
     }
@@ -248,10 +233,9 @@ void GlRenderer::describe(Statistics& statistics, const Quality& quality, const 
 }
 
 ViewOrder GlRenderer::find_order(const Plan& plan, const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report) {
-    if (!plan.sorts()) return surfaces_ ? surfaces_->any_order() : prepared_->any_order();
-    if (!surfaces_) return prepared_->order(camera, size, quality.order, &report);
-    const PixelGrid pixels = pixel_grid(camera, size);
-    return prepared_->sorter().order(camera.viewpoint(), &report, quality.order, &pixels, surfaces_->drawn());
+    if (plan.drawing == Plan::Drawing::nearest_surfaces) return {prepared_->surfaces()->crossed(), {}};
+    if (plan.drawing == Plan::Drawing::sum) return prepared_->any_order();
+    return prepared_->order(camera, size, quality.order, &report);
 }
 
 void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
@@ -273,17 +257,17 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
                        [&](const ViewOrder& chunk, TriangleBatch& batch) { cells.project(chunk, batch); });
 }
 
-void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
+void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, bool nearest, Statistics& statistics) {
     const NearnessFrame frame = cells.nearness_frame();
-    const bool medium = surfaces_->has_medium();
+    const bool medium = prepared_->has_medium();
     const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
                                       shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
-                                      surfaces_->defines(frame.perspective));
-    surfaces_->bind(surfaces, cells, frame);
+                                      surfaces_->defines(frame.perspective, nearest));
+    surfaces_->bind(surfaces, cells, frame, nearest);
     if (medium) shader_->bind(surfaces);
     surfaces.use();
     draw<SurfaceVertex>(surface_segments_, order, statistics, [&](const ViewOrder& chunk, SurfaceBatch& batch) {
-        cells.project(chunk, surfaces_->cells(), frame, batch);
+        cells.project(chunk, frame, batch);
     });
 }
 

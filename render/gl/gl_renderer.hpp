@@ -33,7 +33,6 @@ public:
 
 private:
     void prepare_here(const Scene& scene, const Quality& quality);
-    SceneFacts facts() const;
     void prepare_light(const Scene& scene, const Method& method, bool same_cells);
     void prepare_surfaces(const Scene& scene);
     ViewOrder find_order(const Plan& plan, const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
@@ -41,15 +40,15 @@ private:
     const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
     void draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
     void draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
-    void draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
+    void draw_surfaces(const CellStream& cells, const ViewOrder& order, bool nearest, Statistics& statistics);
 
     std::unique_ptr<Context> context_;  // current during calls only
     std::map<std::string, Program> programs_;  // by their text
     TriangleStream segments_, two_field_segments_, lit_, surface_segments_;
     Target target_;
     PlanRules rules_;
-    std::optional<PreparedScene> prepared_;  // without its isosurfaces
-    Plan plan_;                              // of all views
+    std::optional<PreparedScene> prepared_;
+    Plan plan_;  // of all views
     Method method_;
     // Of method_, for the prepared scene: either light for each pixel or light at the vertices.
     std::unique_ptr<SegmentShader> shader_;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -22,12 +22,11 @@ void append(std::vector<float>& texels, const glm::dvec3& v, double last) {
     texels.push_back(static_cast<float>(last));
 }
 
-Texture upload(const IsoSurfaces& surfaces, const std::vector<float>& thresholds, const SceneUnits& units) {
+Texture upload(const PreparedSurfaces& surfaces) {
     std::vector<float> texels;
-    for (std::size_t i = 0; i < thresholds.size(); ++i) {
-        const IsoSurface& surface = surfaces.surfaces()[i];
-        const double value = units.normalized(std::clamp(surface.value, units.scalar_low, units.scalar_high));
-        append(texels, {thresholds[i], value, surface.opacity}, 0.0);
+    for (std::size_t i = 0; i < surfaces.values().size(); ++i) {
+        const IsoSurface& surface = surfaces.scene().isosurfaces.surfaces()[i];
+        append(texels, {surfaces.thresholds()[i], surfaces.values()[i], surface.opacity}, 0.0);
         append(texels, seen_color(surface, true), 0.0);
         append(texels, seen_color(surface, false), 0.0);
     }
@@ -52,66 +51,35 @@ Texture upload(const std::vector<DirectionalLight>& lights) {
 
 }  // namespace
 
-bool SurfacePass::is_needed(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
-
 void SurfacePass::require_drawn(const Scene& scene, const Quality& quality) {
-    if (!is_needed(scene)) return;
+    if (!has_surfaces(scene)) return;
     if (light_at_vertices(quality.method) || quality.method.blending != Blending::once)
         throw Error({ErrorKind::option, "--method", "one of light per pixel, blended once, for a scene with isosurfaces",
                      to_string(quality.method), "use integral, exact or a table"});
 }
 
-SurfacePass::SurfacePass(const Scene& scene, const SceneUnits& units)
-    : scene_(scene),
-      cells_(scene, units),
-      opaque_(scene.surfaces->isosurfaces.opaque()),
-      two_fields_(scene.opacity_field != nullptr),
-      shading_(scene.surfaces->shading),
-      list_(upload(scene.surfaces->isosurfaces, cells_.thresholds(), units)),
-      lights_(upload(scene.surfaces->lighting.lights)) {}
+SurfacePass::SurfacePass(const PreparedScene& prepared)
+    : prepared_(prepared), list_(upload(*prepared.surfaces())), lights_(upload(prepared.surfaces()->scene().lighting.lights)) {}
 
-bool SurfacePass::is_of(const Scene& scene) const {
-    return scene_.surfaces == scene.surfaces && scene_.mesh == scene.mesh && scene_.field == scene.field &&
-           scene_.opacity_field == scene.opacity_field;
-}
-
-SceneFacts::Surfaces SurfacePass::facts() const {
-    // The shader draws flat cells: no surface is lost in a jump of the scalar.
-    return {.count = cells_.thresholds().size(), .crossed = cells_.crossed_count(), .opaque = opaque_, .jump = false, .shading = shading_};
-}
-
-void SurfacePass::set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible, bool medium,
-                              bool nearest) {
-    if (!drawn_.empty() && scene_.transfer == transfer) return;
-    scene_.transfer = std::move(transfer);
-    has_medium_ = medium;
-    nearest_ = nearest;
-    drawn_ = cells_.crossed();
-    for (std::size_t cell = 0; cell < drawn_.size(); ++cell) drawn_[cell] |= visible[cell];
-    drawn_items_.clear();
-    for (std::size_t cell = 0; cell < drawn_.size() && nearest_; ++cell) {
-        if (drawn_[cell]) drawn_items_.push_back(static_cast<CellId>(cell));
-    }
-}
-
-std::string SurfacePass::defines(bool perspective) const {
-    return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (has_medium_ ? "#define MEDIUM\n" : "") +
-           (has_medium_ && two_fields_ ? "#define TWO_FIELDS\n" : "") +
-           (shading_ != Shading::unlit ? "#define LIT\n" : "") +
-           (shading_ == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest_ ? "#define NEAREST\n" : "");
+std::string SurfacePass::defines(bool perspective, bool nearest) const {
+    const bool medium = prepared_.has_medium(), two_fields = fields_read(prepared_.scene()) == FieldsRead::two;
+    const Shading shading = scene().shading;
+    return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (medium ? "#define MEDIUM\n" : "") +
+           (medium && two_fields ? "#define TWO_FIELDS\n" : "") + (shading != Shading::unlit ? "#define LIT\n" : "") +
+           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "");
 }
 
 // Sets what the variant reads, no more: a uniform that is not read is none.
-void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame) const {
+void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool nearest) const {
     const ScreenTransform& transform = cells.transform();
     const bool perspective = transform.perspective();
-    const bool lit = shading_ != Shading::unlit;
+    const bool lit = scene().shading != Shading::unlit, medium = prepared_.has_medium();
     const auto set = [&](const char* name, double value) { program.set(name, static_cast<float>(value)); };
     if (perspective) set("inverse_far", frame.far);
-    if (perspective && has_medium_) set("inverse_near", 1.0 / cells.near_depth());
-    if (nearest_) set("inverse_nearest", 1.0 / frame.nearest);
+    if (perspective && medium) set("inverse_near", 1.0 / cells.near_depth());
+    if (nearest) set("inverse_nearest", 1.0 / frame.nearest);
     // Of translucent surfaces alone, unlit or lit by one normal for all of a cell, no place is asked for but that of the eye.
-    if (has_medium_ || nearest_ || shading_ == Shading::smooth || (perspective && lit)) {
+    if (medium || nearest || scene().shading == Shading::smooth || (perspective && lit)) {
         const glm::dvec2 center = transform.principal_point();
         program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
         set("pixels_per_unit", transform.pixels_per_unit());
@@ -119,7 +87,7 @@ void SurfacePass::bind(const Program& program, const CellStream& cells, const Ne
     list_.bind(surfaces_unit);
     if (!lit) return;
 
-    const Lighting& lighting = scene_.surfaces->lighting;
+    const Lighting& lighting = scene().lighting;
     set("two_sided", lighting.two_sided ? 1.0 : 0.0);
     set("light_count", static_cast<double>(lighting.lights.size()));
     program.set("ambient", glm::vec4(lighting.ambient, lighting.exponent));

@@ -1,60 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Isosurfaces in OpenGL (shaders/surfaces.frag): what the scene's surfaces and lights are to the fragments, and how the frame is drawn
-// for them.
-//
-// "Model only what a scene requires" (render/plan.hpp): cells that no surface crosses are left out unless their medium is seen; without any
-// medium none is integrated; and opaque surfaces alone are drawn in any order, by a depth test.
+// Isosurfaces in OpenGL (shaders/surfaces.frag): what the scene's surfaces and lights are to the fragments. Which cells they cross, which
+// of them are seen and whether they want an order is known to PreparedScene.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "render/cell_stream.hpp"
 #include "render/gl/objects.hpp"
 #include "render/gl/textures.hpp"
-#include "render/plan.hpp"
 #include "render/renderer.hpp"
 
 namespace cellproj::gl {
 
 class SurfacePass {
 public:
-    static bool is_needed(const Scene& scene);  // it has surfaces
     // Throws Error (option) for surfaces with a method of light at the vertices or blended by halves, which know no place in a
     // segment.
     static void require_drawn(const Scene& scene, const Quality& quality);
 
-    // A scene that needs it, and that `validate` passes.
-    SurfacePass(const Scene& scene, const SceneUnits& units);
+    // Of a scene that has_surfaces, as they are now; it must outlive this.
+    explicit SurfacePass(const PreparedScene& prepared);
 
-    // The same surfaces, mesh and fields.
-    bool is_of(const Scene& scene) const;
-    // What a plan is made from.
-    SceneFacts::Surfaces facts() const;
-    // Which cells are drawn without surfaces (PreparedScene::visible of a transfer function), whether a medium is seen in them, and whether
-    // the plan is to draw the nearest surfaces alone; before anything is drawn.
-    void set_visible(std::shared_ptr<const TransferFunction> transfer, std::span<const std::uint8_t> visible, bool medium, bool nearest);
-
-    const SurfaceCells& cells() const { return cells_; }
-    bool has_medium() const { return has_medium_; }
-    std::span<const std::uint8_t> drawn() const { return drawn_; }  // #T, not empty
-    ViewOrder any_order() const { return {drawn_items_, {}}; }      // of the cells drawn, for nearest surfaces
-
-    std::string defines(bool perspective) const;
-    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame) const;
+    // What is defined and bound follows the scene's transfer function of the moment.
+    // `nearest`: the nearest surface of each pixel is all that is drawn.
+    std::string defines(bool perspective, bool nearest) const;
+    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool nearest) const;
 
 private:
-    Scene scene_;  // its transfer function: the one that `drawn_` is of
-    SurfaceCells cells_;
-    bool opaque_, two_fields_, has_medium_ = false, nearest_ = false;
-    Shading shading_;
+    const SurfaceScene& scene() const { return prepared_.surfaces()->scene(); }
+
+    const PreparedScene& prepared_;
     Texture list_, lights_;
-    std::vector<std::uint8_t> drawn_;
-    std::vector<CellId> drawn_items_;
 };
 
 }  // namespace cellproj::gl

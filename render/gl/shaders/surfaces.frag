@@ -33,7 +33,7 @@ layout(location = 0) out vec4 light;  // associated colour, opacity
 vec4 light_of_segment(scalars s_front, scalars s_back, float segment);
 #endif
 
-// How many surfaces each scalar is not below (render/surface_cells.hpp), known to be between both.
+// How many surfaces each scalar is not below (render/prepared_surfaces.hpp), known to be between both.
 ivec2 ranks(vec2 s, int low, int high) {
     ivec2 from = ivec2(low), to = ivec2(high);
     while (any(lessThan(from, to))) {
