@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh/error.hpp"
+#include "render/depth_window.hpp"
 #include "render/prepared_scene.hpp"
 #include "render/scene_view.hpp"
 
@@ -140,7 +141,7 @@ Plan plan_scene(const SceneFacts& facts, const Quality& quality, Backend backend
     return result;
 }
 
-Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSize size, const PlanRules& rules) {
+Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSize size, bool cut, const PlanRules& rules) {
     if (camera.projection == Camera::Projection::parallel) {
         plan.decisions.push_back({"projection", "parallel", "depth and scalar are affine on the screen: no division at a pixel"});
     } else {
@@ -158,6 +159,8 @@ Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSi
     } else {
         plan.decisions.push_back({"view", "what the view holds", "the mesh's box reaches into it"});
     }
+    plan.decisions.push_back(cut ? Decision{"rays", "cut", "at clipping planes and bodies, a part of each ray"}
+                                 : Decision{"rays", "whole", "nothing is clipped, and there are no bodies"});
     return plan;
 }
 
@@ -166,7 +169,7 @@ Plan plan(const Scene& scene, const Camera& camera, ImageSize size, const Qualit
     validate(size, "size");
     require_drawn(backend, quality, fields_read(scene));
     const SceneFacts facts = PreparedScene(scene).facts();
-    return plan_view(plan_scene(facts, quality, backend), facts, camera, size);
+    return plan_view(plan_scene(facts, quality, backend), facts, camera, size, DepthWindow::is_needed(scene));
 }
 
 double expected_fragments(const SceneFacts& facts, std::size_t cells, const Camera& camera, ImageSize size) {

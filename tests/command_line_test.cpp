@@ -16,6 +16,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "render/renderer.hpp"
 #include "tests/support/folder_test.hpp"
 
 namespace {
@@ -97,13 +98,31 @@ TEST_F(CommandLine, TheBackendIsChosenAndTold) {
         std::ifstream stream(path("stats.json"));
         return nlohmann::json::parse(stream).at("pictures").at(0).at("backend").get<std::string>();
     };
-    EXPECT_EQ(backend_of(""), "cpu");
+    const bool gpu = find_gpu().found;
+    EXPECT_EQ(backend_of(""), gpu ? "gl_egl" : "cpu");
     EXPECT_EQ(backend_of("--backend cpu --threads 1 --order pixel"), "cpu");
-    EXPECT_EQ(backend_of("--backend gl"), "gl_osmesa");
-    EXPECT_EQ(backend_of("--method shirley-tuchman"), "gl_osmesa");  // which only it draws
+    EXPECT_EQ(backend_of("--backend osmesa"), "gl_osmesa");
+    EXPECT_EQ(backend_of("--backend egl"), "gl_egl");
+    EXPECT_EQ(backend_of("--backend gl"), gpu ? "gl_egl" : "gl_osmesa");
+    EXPECT_EQ(backend_of("--method shirley-tuchman"), gpu ? "gl_egl" : "gl_osmesa");  // which only OpenGL draws
     expect_refused("render cube.vtk -o x.png --backend cpu --method shirley-tuchman", {"--method", "--backend gl"});
     expect_refused("render cube.vtk -o x.png --backend gl --order pixel", {"--order", "--backend cpu"});
     expect_refused("render cube.vtk -o x.png --backend cpu --target rgba8", {"--target", "rgba32f"});
+}
+
+TEST_F(CommandLine, ExplainsWhatItChose) {
+    const Outcome outcome = run("render cube.vtk -o cube.png --size 20x20 --backend cpu --explain --stats stats.json");
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    std::ifstream stream(path("stats.json"));
+    const auto plan = nlohmann::json::parse(stream).at("pictures").at(0).at("plan");
+    ASSERT_EQ(plan.at(0).at("rule"), "backend");
+    for (const auto& decision : plan)  // every one of them stands on a line of its own
+        for (const char* key : {"rule", "chosen", "why"}) EXPECT_NE(outcome.text.find(decision.at(key).get<std::string>()), std::string::npos) << key;
+    const Outcome silent = run("render cube.vtk -o cube.png --size 20x20");
+    EXPECT_EQ(silent.text.find("backend "), std::string::npos) << silent.text;
+    // Pictures that are planned alike are explained once.
+    const Outcome turned = run("render cube.vtk -o cube.png --size 20x20 --explain --orbit 90 --frames 3");
+    EXPECT_EQ(turned.text.find("  gradients "), turned.text.rfind("  gradients ")) << turned.text;
 }
 
 TEST_F(CommandLine, TheOrderIsChosenProvenAndDoubtedAloud) {

@@ -21,6 +21,7 @@
 
 #include "apps/scenes/measured_scenes.hpp"
 #include "mesh/error.hpp"
+#include "tests/support/cut_scenes.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
@@ -36,7 +37,9 @@ using testing_support::max_difference;
 using testing_support::point_field;
 using testing_support::ramp;
 using testing_support::scene_of;
+using testing_support::sphere;
 using testing_support::view_of_unit_cube;
+using testing_support::with_bodies;
 
 using Projection = Camera::Projection;
 using Drawing = Plan::Drawing;
@@ -209,6 +212,24 @@ TEST_P(PlanOfEither, OutsideTheViewIsAnEmptyPicture) {
     }
 }
 
+// Bodies are seen where no cell is, and hide light that needs no order.
+TEST_P(PlanOfEither, BodiesAreSeenWithoutCells) {
+    const auto with_spheres = [](const Scene& scene) {
+        return with_bodies(scene, {sphere({0.4, 0.5, 0.6}, 0.25, 6, {0.9, 0.5, 0.2}), sphere({5.5, 0.5, 0.5}, 0.25, 6, {0.2, 0.5, 0.9})});
+    };
+    Camera away = camera();
+    away.center += glm::dvec3(5, 0, 0);
+    away.eye += glm::dvec3(5, 0, 0);
+    const PlanRules none{.empty_view = false, .nothing_seen = false, .culling = false, .nearest_surfaces = false, .sum = false, .few_cells = false, .constant_light = false};
+    for (const auto& [scene, view] : {std::pair(waves_in(nothing()), camera()), std::pair(waves_in(ramp()), away), std::pair(waves_in(glow()), camera()),
+                                      std::pair(with(waves_in(nothing()), opaque_three), camera())}) {
+        const Drawn shortest = draw(with_spheres(scene), view), general = draw(with_spheres(scene), view, {}, none);
+        EXPECT_GT(brightest(shortest.image), 0.99);  // a body is opaque
+        EXPECT_EQ(chosen(shortest.statistics.plan, "rays"), "cut");
+        EXPECT_LE(max_difference(shortest.image, general.image), 1e-6 * std::max(1.0, brightest(general.image)));
+    }
+}
+
 TEST_P(PlanOfEither, ConstantLightNeedsNoTable) {
     const TransferFunction shining(OpticalModel::emitter, {{0, {0.3, 0.6, 0.9}}}, {{0, 2.5}});
     // At an optical depth of 30 a cell, llvmpipe's two ways to the exponential are 1.3e-6 apart.
@@ -356,6 +377,7 @@ TEST(Plan, TenScenesAreExplained) {
         EXPECT_PRED2(starts, chosen(made.decisions, "method"), c.method) << c.name;
         EXPECT_PRED2(starts, chosen(made.decisions, "gradients"), c.gradients) << c.name;
         EXPECT_EQ(chosen(made.decisions, "projection"), "perspective") << c.name;
+        EXPECT_EQ(chosen(made.decisions, "rays"), "whole") << c.name;
         EXPECT_EQ(chosen(made.decisions, "view"), "what the view holds") << c.name;
         for (const Decision& d : made.decisions) EXPECT_FALSE(d.why.empty()) << c.name << ": " << d.rule;
         // The renderer draws by the same plan; the sorter's choice comes on top.

@@ -119,7 +119,7 @@ public:
         window_->AddRenderer(renderer_);
     }
 
-    Statistics draw(const Camera& camera) override {
+    void draw(const Camera& camera) override {
         vtkCamera* view = renderer_->GetActiveCamera();
         view->SetPosition(camera.eye.x, camera.eye.y, camera.eye.z);
         view->SetFocalPoint(camera.center.x, camera.center.y, camera.center.z);
@@ -130,7 +130,6 @@ public:
         renderer_->ResetCameraClippingRange();
         window_->Render();
         window_->WaitForCompletion();
-        return {};
     }
 
     Image picture() const override {

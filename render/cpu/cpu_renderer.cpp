@@ -20,6 +20,7 @@
 #include "render/cpu/kernels.hpp"
 #include "render/cpu/screen_mesh.hpp"
 #include "render/cpu/tile_bins.hpp"
+#include "render/depth_window.hpp"
 #include "render/plan.hpp"
 #include "render/prepared_scene.hpp"
 
@@ -102,6 +103,7 @@ private:
     using Drawing = Plan::Drawing;
     void prepare_method(const Method& method, const TransferFunction& transfer, bool same_transfer);
     void describe(Statistics& statistics, const Quality& quality, const Plan& plan) const;
+    void set_windows(const DepthWindow& window);
     void draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics);
     bool may_be_opaque() const;
 
@@ -116,6 +118,7 @@ private:
     TileBins bins_;
     std::vector<std::uint8_t> extra_drawn_;
     std::vector<PixelTrail> trails_;  // with isosurfaces, of the picture's pixels
+    std::vector<NearnessInterval> windows_;  // of the picture's pixels, where something is cut
     oneapi::tbb::enumerable_thread_specific<PendingFragments> pending_;
 };
 
@@ -166,10 +169,11 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     Statistics statistics;
     const Stopwatch total;
     prepare_here(scene, quality);
-    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, rules_);
+    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, DepthWindow::is_needed(scene), rules_);
     Image image(size.width, size.height);
     statistics.ms.plan = total.ms();
     if (plan.drawing == Drawing::nothing) {
+        if (DepthWindow::is_needed(scene)) DepthWindow(scene, camera, size, prepared_->units().length).add_bodies(image);
         statistics.ms.total = total.ms();
         describe(statistics, quality, plan);
         if (out) *out = std::move(statistics);
@@ -187,6 +191,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     OrderReport order_report;
     ViewOrder order;
     const Drawing drawing = plan.drawing;
+    std::optional<DepthWindow> window;
     oneapi::tbb::parallel_invoke(
         [&] {
             // Pixels that sort their own fragments want cells nearly sorted, no more.
@@ -196,6 +201,9 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
         [&] {
             mesh_.set_view(camera, size);
             bins_.find_cells(mesh_.cells(), first);
+        },
+        [&] {
+            if (DepthWindow::is_needed(scene)) window.emplace(scene, camera, size, prepared_->units().length);
         });
     statistics.ms.sort = sort.ms();
 
@@ -207,6 +215,8 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
     if (prepared_->surfaces()) trails_.assign(image.pixels.size(), {});
+    windows_.clear();
+    if (window) set_windows(*window);
     statistics.ms.project = projecting.ms();
 
     for (int y = 0; y < size.height; y += first.height)
@@ -216,6 +226,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
             draw(image, region, drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }
+    if (window) window->add_bodies(image);
     statistics.ms.total = total.ms();
 
     std::vector<CellId> parts;
@@ -259,6 +270,11 @@ bool CpuRenderer::may_be_opaque() const {
     return transmitted < 0.5;
 }
 
+void CpuRenderer::set_windows(const DepthWindow& window) {
+    for (const DepthInterval& pixel : window.pixels())
+        windows_.push_back(pixel.empty() ? NearnessInterval::nothing() : NearnessInterval{mesh_.nearness(pixel.near), mesh_.nearness(pixel.far)});
+}
+
 // Slab by slab from the front, each tile by one task: the same order of operations for any number of threads.
 void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics) {
     const int columns = (region.width + tile_side - 1) / tile_side, rows = (region.height + tile_side - 1) / tile_side;
@@ -282,6 +298,8 @@ void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Stat
                           static_cast<std::size_t>(image.width), &bins_.full(column, row)};
                 if (prepared_->surfaces())
                     tile.trails = &trails_[static_cast<std::size_t>(y) * tile.stride + static_cast<std::size_t>(x)];
+                if (!windows_.empty())
+                    tile.windows = &windows_[static_cast<std::size_t>(y) * tile.stride + static_cast<std::size_t>(x)];
                 switch (drawing) {
                     case Drawing::nothing:
                         break;

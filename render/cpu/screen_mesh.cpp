@@ -146,6 +146,11 @@ glm::dvec3 ScreenMesh::precisely_on_screen(const glm::dvec3& p) const {
     return {bounded(screen.x), bounded(screen.y), transform_.perspective() ? 1.0 / p.z : base_ - p.z};
 }
 
+float ScreenMesh::nearness(double depth) const {
+    constexpr double unbounded = NearnessInterval::unbounded;
+    return static_cast<float>(std::clamp(transform_.perspective() ? 1.0 / depth - base_ : base_ - depth, -unbounded, unbounded));
+}
+
 ScreenPoint ScreenMesh::rounded(const glm::dvec3& place, float scalar) const {
     const double nearness = transform_.perspective() ? place.z - base_ : place.z;
     return {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(nearness), scalar};
@@ -228,23 +233,26 @@ std::size_t ScreenMesh::add_front_part(const Corners& corners, CellId cell) {
 
 std::span<const std::uint32_t> ScreenMesh::nearly_sorted(std::span<const CellId> cells) {
     constexpr std::size_t steps = 1024;
-    const auto nearness = [&](CellId cell) { return points_[cells_.tets[cell][0]].nearness; };
+    using Range = oneapi::tbb::blocked_range<std::size_t>;
+    keys_.resize(cells.size());
+    oneapi::tbb::parallel_for(Range(0, cells.size(), 4096), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) keys_[i] = points_[cells_.tets[cells[i]][0]].nearness;
+    });
     float farthest = behind_near_plane, nearest = -behind_near_plane;
-    for (const CellId cell : cells) {
-        const float n = nearness(cell);
+    for (const float n : keys_) {
         if (n == behind_near_plane) continue;
         farthest = std::min(farthest, n);
         nearest = std::max(nearest, n);
     }
     const float per_step = nearest > farthest ? static_cast<float>(steps - 1) / (nearest - farthest) : 0.0F;
-    const auto step = [&](CellId cell) {
-        return static_cast<std::size_t>(std::clamp((nearness(cell) - farthest) * per_step, 0.0F, static_cast<float>(steps - 1)));
+    const auto step = [&](float n) {
+        return static_cast<std::size_t>(std::clamp((n - farthest) * per_step, 0.0F, static_cast<float>(steps - 1)));
     };
     std::array<std::uint32_t, steps + 1> next{};
-    for (const CellId cell : cells) ++next[step(cell) + 1];
+    for (const float n : keys_) ++next[step(n) + 1];
     for (std::size_t i = 0; i < steps; ++i) next[i + 1] += next[i];
     sorted_.resize(cells.size());
-    for (const CellId cell : cells) sorted_[next[step(cell)]++] = cell;
+    for (std::size_t i = 0; i < cells.size(); ++i) sorted_[next[step(keys_[i])]++] = cells[i];
     return sorted_;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "classify/segment_method.hpp"
+#include "render/depth_window.hpp"
 #include "render/gl/shaders.hpp"
 #include "render/order_check.hpp"
 
@@ -112,6 +113,7 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
 void GlRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     require_drawn(Backend::gl_osmesa, quality, fields_read(scene));
     SurfacePass::require_drawn(scene, quality);
+    WindowTexture::require_drawn(scene, quality);
     const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field &&
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
@@ -172,10 +174,11 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     validate(size, "size");
     const CurrentContext current(*context_);
     prepare_here(scene, quality);
-    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, rules_);
+    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, DepthWindow::is_needed(scene), rules_);
     statistics.ms.plan = total.ms();
     if (plan.drawing == Plan::Drawing::nothing) {
         Image image(size.width, size.height);
+        if (DepthWindow::is_needed(scene)) DepthWindow(scene, camera, size, prepared_->units().length).add_bodies(image);
         statistics.ms.total = total.ms();
         describe(statistics, quality, plan);
         if (out) *out = std::move(statistics);
@@ -191,6 +194,12 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 
     const Stopwatch transform;
     const CellStream cells(*prepared_, camera, size);
+    std::optional<DepthWindow> window;
+    windows_.reset();
+    if (DepthWindow::is_needed(scene)) {
+        window.emplace(scene, camera, size, prepared_->units().length);
+        windows_.emplace(*window, surfaces_ ? cells.nearness_frame() : cells.segment_frame(), size.width);
+    }
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
     nearest ? set_depth_test() : set_blending();
@@ -204,6 +213,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     Image image = target_.read();
     check_errors("drawing");
     keep_physical(image);
+    if (window) window->add_bodies(image);
     statistics.ms.read_back = read_back.ms();
     statistics.ms.total = total.ms();
 
@@ -244,8 +254,9 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
     const Program& segments =
         program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shaders::light_glsl + shader_->source(),
                 std::string(perspective ? "#define PERSPECTIVE\n" : "") + (two_fields ? "#define TWO_FIELDS\n" : "") +
-                    blending_define(method_));
+                    (windows_ ? "#define WINDOW\n" : "") + blending_define(method_));
     if (perspective) set_camera(segments, cells);
+    if (windows_) windows_->bind(segments);
     shader_->bind(segments);
     segments.use();
     if (two_fields) {
@@ -262,8 +273,9 @@ void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, 
     const bool medium = prepared_->has_medium();
     const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
                                       shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
-                                      surfaces_->defines(frame.perspective, nearest));
-    surfaces_->bind(surfaces, cells, frame, nearest);
+                                      surfaces_->defines(frame.perspective, nearest) + (windows_ ? "#define WINDOW\n" : ""));
+    surfaces_->bind(surfaces, cells, frame, {.nearest = nearest, .windowed = windows_.has_value()});
+    if (windows_) windows_->bind(surfaces);
     if (medium) shader_->bind(surfaces);
     surfaces.use();
     draw<SurfaceVertex>(surface_segments_, order, statistics, [&](const ViewOrder& chunk, SurfaceBatch& batch) {

@@ -70,16 +70,17 @@ std::string SurfacePass::defines(bool perspective, bool nearest) const {
 }
 
 // Sets what the variant reads, no more: a uniform that is not read is none.
-void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool nearest) const {
+void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, Variant variant) const {
     const ScreenTransform& transform = cells.transform();
     const bool perspective = transform.perspective();
     const bool lit = scene().shading != Shading::unlit, medium = prepared_.has_medium();
+    const auto [nearest, windowed] = variant;
     const auto set = [&](const char* name, double value) { program.set(name, static_cast<float>(value)); };
     if (perspective) set("inverse_far", frame.far);
-    if (perspective && medium) set("inverse_near", 1.0 / cells.near_depth());
+    if (perspective && (medium || windowed)) set("inverse_near", 1.0 / cells.near_depth());
     if (nearest) set("inverse_nearest", 1.0 / frame.nearest);
-    // Of translucent surfaces alone, unlit or lit by one normal for all of a cell, no place is asked for but that of the eye.
-    if (medium || nearest || scene().shading == Shading::smooth || (perspective && lit)) {
+    // Of translucent surfaces alone, not cut, unlit or lit by one normal for all of a cell, no place is asked for but that of the eye.
+    if (medium || windowed || nearest || scene().shading == Shading::smooth || (perspective && lit)) {
         const glm::dvec2 center = transform.principal_point();
         program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
         set("pixels_per_unit", transform.pixels_per_unit());

@@ -23,9 +23,12 @@ public:
     explicit SurfacePass(const PreparedScene& prepared);
 
     // What is defined and bound follows the scene's transfer function of the moment.
-    // `nearest`: the nearest surface of each pixel is all that is drawn.
-    std::string defines(bool perspective, bool nearest) const;
-    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool nearest) const;
+    struct Variant {
+        bool nearest;   // NEAREST: the nearest surface of each pixel is all that is drawn
+        bool windowed;  // WINDOW: rays are cut
+    };
+    std::string defines(bool perspective, bool nearest) const;  // without WINDOW
+    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, Variant variant) const;
 
 private:
     const SurfaceScene& scene() const { return prepared_.surfaces()->scene(); }
