@@ -40,7 +40,7 @@ struct SceneFacts {
         bool jump = false;       // PreparedSurfaces::jump
         Shading shading = Shading::unlit;
     };
-    std::optional<Surfaces> surfaces;
+    std::optional<Surfaces> surfaces = {};
 
     // Whether any picture shows anything.
     bool seen() const { return medium > 0 || (surfaces && surfaces->crossed > 0); }
