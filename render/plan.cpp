@@ -26,8 +26,7 @@ Decision decide_cells(const SceneFacts& facts, const PlanRules& rules) {
     std::string chosen = std::to_string(facts.medium) + " of " + std::to_string(facts.cells) + " with a visible medium";
     if (facts.surfaces) chosen += ", " + std::to_string(crossed) + " with isosurfaces";
     if (!rules.culling) return {"cells", chosen + "; all are drawn", "the rule is switched off"};
-    std::string why = facts.medium == facts.cells ? "every cell shows something" : "what shows nothing is left out before sorting: the transfer function's largest values over a cell's scalars tell";
-    if (facts.surfaces) why += facts.medium == facts.cells ? "" : ", and on which sides of the isovalues its points lie";
+    std::string why = facts.medium == facts.cells ? "every cell shows something" : "the others show nothing over the range of their scalars: left out before sorting";
     if (facts.not_finite > 0) why += "; " + counted(facts.not_finite, "cell") + (facts.not_finite == 1 ? " has" : " have") + " a scalar that is not finite";
     return {"cells", std::move(chosen), std::move(why)};
 }
@@ -87,23 +86,22 @@ bool exact_where_constant(const Method& method) {
     }
 }
 
-Decision decide_method(const SceneFacts& facts, const Quality& quality, const PlanRules& rules, Method& method) {
+Decision decide_method(const SceneFacts& facts, const Quality& quality, Backend backend, const PlanRules& rules, Method& method) {
     method = quality.method;
-    const auto closed_form = [&] {
-        method.kind = MethodKind::homogeneous;
-        method.size = Method{}.size;
-        return to_string(method);
-    };
     if (!rules.constant_light || light_at_vertices(quality.method)) return {"method", to_string(method), "asked for"};
+    // The cheapest that has no table: in the kernels one piece without a search, in a shader two samples.
+    Method closed_form = quality.method;
+    closed_form.kind = backend == Backend::cpu ? MethodKind::integral : MethodKind::homogeneous;
+    closed_form.size = Method{}.size;
     if (facts.medium == 0) {
-        closed_form();
-        return {"method", "none", "no medium is seen: no table, no pieces of the transfer function"};
+        method = closed_form;
+        return {"method", "none", "no medium is seen: no table"};
     }
-    if (facts.constant_light && exact_where_constant(quality.method)) {
-        return {"method", closed_form() + " instead of " + to_string(quality.method),
-                "colour and extinction are the same over the field's range: the closed form is exact, without table or pieces"};
-    }
-    return {"method", to_string(method), facts.constant_light ? "asked for, though colour and extinction are constant" : "colour or extinction vary over the field's range"};
+    if (!facts.constant_light) return {"method", to_string(method), "colour or extinction vary over the field's range"};
+    if (!exact_where_constant(quality.method)) return {"method", to_string(method), "asked for, though colour and extinction are constant"};
+    method = closed_form;
+    const std::string instead = closed_form.kind == quality.method.kind ? "" : " instead of " + to_string(quality.method);
+    return {"method", to_string(method) + instead, "colour and extinction are the same over the field's range: a closed form, exact, without a table"};
 }
 
 Decision decide_field(const SceneFacts& facts) {
@@ -135,7 +133,7 @@ Plan plan_scene(const SceneFacts& facts, const Quality& quality, Backend backend
     result.drawing = order.drawing;
     result.few_cells = order.few_cells;
     result.decisions.push_back(std::move(order.decision));
-    result.decisions.push_back(decide_method(facts, quality, rules, result.method));
+    result.decisions.push_back(decide_method(facts, quality, backend, rules, result.method));
     result.decisions.push_back(decide_field(facts));
     result.decisions.push_back(decide_gradients(facts));
     return result;

@@ -34,9 +34,12 @@ Scene waves_in(std::int64_t boxes, const TransferFunction& transfer) {
     return result;
 }
 
-Scene with_surfaces(Scene scene, double opacity, Shading shading) {
-    const std::vector<IsoSurface> three{{0.3, {1, 0.5, 0}, opacity, {}}, {0.5, {1, 0.5, 0}, opacity, {}}, {0.7, {1, 0.5, 0}, opacity, {}}};
-    scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(three), shading});
+const std::vector<double> one{0.5}, three{0.3, 0.5, 0.7};
+
+Scene with_opaque_surfaces(Scene scene, const std::vector<double>& values, Shading shading) {
+    std::vector<IsoSurface> list;
+    for (const double value : values) list.push_back({value, {1, 0.5, 0}, 1, {}});
+    scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::move(list)), shading});
     return scene;
 }
 
@@ -63,11 +66,12 @@ void frames(benchmark::State& state, const Scene& scene, const PlanRules& rules,
     state.counters["draw"] = statistics.ms.draw;
 }
 
-// Three opaque surfaces alone. Mixed: in a medium that nobody sees, all cells, in an order; sorted: the crossed cells, in an order.
-void PlanOpaqueSurfaces(benchmark::State& state, bool mixed, bool nearest) {
-    const TransferFunction thin(OpticalModel::density, {{0, glm::dvec3(1)}}, {{0, 1e-30}, {1, 2e-30}});
-    frames(state, with_surfaces(waves_in(state.range(0), mixed ? thin : nothing), 1, Shading::smooth), {.nearest_surfaces = nearest});
+// Opaque surfaces alone. By the rule; sorted: the crossed cells, in an order; mixed: in a medium that nobody sees, all cells, in an order; in_ramp: in a
+// medium that is seen, which is another picture.
+void PlanOpaqueSurfaces(benchmark::State& state, const std::vector<double>& values, const TransferFunction& medium, bool nearest) {
+    frames(state, with_opaque_surfaces(waves_in(state.range(0), medium), values, Shading::smooth), {.nearest_surfaces = nearest});
 }
+const TransferFunction thin(OpticalModel::density, {{0, glm::dvec3(1)}}, {{0, 1e-30}, {1, 2e-30}});
 
 // A transfer function that shows about 5 % of the cells.
 void PlanCulling(benchmark::State& state, bool culling, bool few_cells) {
@@ -85,9 +89,9 @@ void PlanSum(benchmark::State& state, bool sum) {
     frames(state, waves_in(state.range(0), glow), {.sum = sum});
 }
 
-void PlanConstantLight(benchmark::State& state, bool closed_form) {
+void PlanConstantLight(benchmark::State& state, const char* method, bool closed_form) {
     const TransferFunction constant(OpticalModel::density, {{0, {0.9, 0.4, 0.1}}}, {{0, 2}});
-    frames(state, waves_in(state.range(0), constant), {.constant_light = closed_form});
+    frames(state, waves_in(state.range(0), constant), {.constant_light = closed_form}, view, {.method = parse_method(method)});
 }
 
 void PlanEmptyView(benchmark::State& state, bool at_once) { frames(state, waves_in(state.range(0), scenes::ramp()), {.empty_view = at_once}, view_beside); }
@@ -96,7 +100,7 @@ void PlanNothingSeen(benchmark::State& state, bool at_once) { frames(state, wave
 
 // Everything that is made once for surfaces of a shading.
 void PlanGradients(benchmark::State& state, Shading shading) {
-    const Scene scene = with_surfaces(waves_in(state.range(0), nothing), 1, shading);
+    const Scene scene = with_opaque_surfaces(waves_in(state.range(0), nothing), three, shading);
     for (auto _ : state) {
         const auto renderer = make_renderer(Backend::cpu);
         renderer->prepare(scene);
@@ -119,16 +123,23 @@ void PlanProjection(benchmark::State& state, View camera) { frames(state, waves_
 void in_frames(benchmark::internal::Benchmark* benchmark) {
     benchmark->Arg(34)->Arg(67)->Iterations(16)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 }
-BENCHMARK_CAPTURE(PlanOpaqueSurfaces, nearest, false, true)->Apply(in_frames);
-BENCHMARK_CAPTURE(PlanOpaqueSurfaces, sorted, false, false)->Apply(in_frames);
-BENCHMARK_CAPTURE(PlanOpaqueSurfaces, mixed, true, false)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanOpaqueSurfaces, one_nearest, one, nothing, true)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanOpaqueSurfaces, one_mixed, one, thin, false)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanOpaqueSurfaces, three_nearest, three, nothing, true)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanOpaqueSurfaces, three_sorted, three, nothing, false)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanOpaqueSurfaces, three_mixed, three, thin, false)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanOpaqueSurfaces, three_in_ramp, three, scenes::ramp(), false)->Apply(in_frames);
 BENCHMARK_CAPTURE(PlanCulling, on, true, true)->Apply(in_frames);
 BENCHMARK_CAPTURE(PlanCulling, sorted, true, false)->Apply(in_frames);
 BENCHMARK_CAPTURE(PlanCulling, off, false, false)->Apply(in_frames);
 BENCHMARK_CAPTURE(PlanSum, on, true)->Apply(in_frames);
 BENCHMARK_CAPTURE(PlanSum, off, false)->Apply(in_frames);
-BENCHMARK_CAPTURE(PlanConstantLight, on, true)->Apply(in_frames);
-BENCHMARK_CAPTURE(PlanConstantLight, off, false)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanConstantLight, exact_on, "exact:1e-5", true)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanConstantLight, exact_off, "exact:1e-5", false)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanConstantLight, linear_on, "linear:8", true)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanConstantLight, linear_off, "linear:8", false)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanConstantLight, table_on, "preint2d-exp:256", true)->Apply(in_frames);
+BENCHMARK_CAPTURE(PlanConstantLight, table_off, "preint2d-exp:256", false)->Apply(in_frames);
 BENCHMARK_CAPTURE(PlanEmptyView, on, true)->Apply(in_frames);
 BENCHMARK_CAPTURE(PlanEmptyView, off, false)->Apply(in_frames);
 BENCHMARK_CAPTURE(PlanNothingSeen, on, true)->Apply(in_frames);
