@@ -60,7 +60,7 @@ TEST(PreparedSurfaces, OtherIsovaluesKeepTheGradientsAndOtherShadingDoesNot) {
     PreparedScene prepared(scene);
     const glm::vec3* gradients = prepared.surfaces()->gradients().data();
     const auto set = [&](double value, Shading shading) {
-        prepared.set_surfaces(std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces({{value}}), shading, {}}));
+        prepared.set_surfaces(std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::vector<IsoSurface>{{value}}), shading, {}}));
     };
     set(0.3, Shading::smooth);
     EXPECT_EQ(prepared.surfaces()->gradients().data(), gradients);
