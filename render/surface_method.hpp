@@ -11,7 +11,7 @@
 namespace cellproj {
 
 enum class SurfaceMethodKind {
-    exact,    // the segment is cut at every crossing (RKE00 §10, exact); the usual one, and the faster one too
+    exact,    // the segment is cut at every crossing (RKE00 §10, exact); the usual one
     table,    // all surfaces of a segment by one lookup over (s_f, s_b) (RKE00 Fig. 6, 9, 13), as if they stood at the first one, where
               // the medium is cut (Fig. 15)
     combined  // by the same table, part before and part behind the whole medium of the segment (RKE00 §10, the smooth combination)
