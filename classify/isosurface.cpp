@@ -110,9 +110,9 @@ IsoSurfaceTable::IsoSurfaceTable(const IsoSurfaces& surfaces, double low, double
     }
 }
 
-double IsoSurfaceTable::scalar(int i) const {
-    const double share = static_cast<double>(i) / (size_ - 1);
-    return (1 - share) * low_ + share * high_;
+double IsoSurfaceTable::scalar_at(double low, double high, int n, int i) {
+    const double share = static_cast<double>(i) / (n - 1);
+    return (1 - share) * low + share * high;
 }
 
 int IsoSurfaceTable::position(double s) const {

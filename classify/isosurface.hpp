@@ -100,9 +100,11 @@ public:
     IsoSurfaceTable(const IsoSurfaces& surfaces, double low, double high, int n);
 
     int size() const { return size_; }
-    double step() const { return (high_ - low_) / (size_ - 1); }
+    int intervals() const { return size_ - 1; }
+    double step() const { return (high_ - low_) / intervals(); }
     // The scalar at the table's position i, 0 .. n − 1, and the nearest position to a scalar.
-    double scalar(int i) const;
+    double scalar(int i) const { return scalar_at(low_, high_, size_, i); }
+    static double scalar_at(double low, double high, int n, int i);
     int position(double s) const;
     const std::vector<Texel>& texels() const { return texels_; }  // (i, j) for (s_f, s_b) at i + n·j
     const Texel& lookup(double s_f, double s_b) const;

@@ -169,17 +169,16 @@ std::vector<std::uint8_t> find_visible(const Scene& scene, const SceneUnits& uni
 
 }  // namespace
 
-PreparedScene::PreparedScene(Scene scene, double surface_margin, const PlanRules& rules)
+PreparedScene::PreparedScene(Scene scene, const SurfaceSides& sides, const PlanRules& rules)
     : scene_(std::move(scene)), units_(find_units(scene_)), culling_(rules.culling),
       bins_(find_bins(main_field(scene_, units_))),
-      opacity_bins_(scene_.opacity_field ? find_bins(opacity_field(scene_, units_)) : std::vector<BinRange>{}),
-      surface_margin_(surface_margin) {
+      opacity_bins_(scene_.opacity_field ? find_bins(opacity_field(scene_, units_)) : std::vector<BinRange>{}) {
     facts_.box = bounds(scene_.mesh->points);
     facts_.cells = bins_.size();
     facts_.location = scene_.field->location;
     facts_.fields = fields_read(scene_);
     for (std::size_t cell = 0; cell < bins_.size(); ++cell) facts_.not_finite += !finite(cell);
-    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, surface_margin_);
+    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, sides);
     find_visible_cells();
 }
 
@@ -238,13 +237,13 @@ void PreparedScene::set_transfer(std::shared_ptr<const TransferFunction> transfe
     find_visible_cells();
 }
 
-void PreparedScene::set_surfaces(std::shared_ptr<const SurfaceScene> surfaces) {
+void PreparedScene::set_surfaces(std::shared_ptr<const SurfaceScene> surfaces, const SurfaceSides& sides) {
     Scene changed = scene_;
     changed.surfaces = std::move(surfaces);
     validate(changed);
     const std::optional<PreparedSurfaces> before = std::exchange(surfaces_, std::nullopt);
     scene_ = std::move(changed);
-    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, surface_margin_, before ? &*before : nullptr);
+    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, sides, before ? &*before : nullptr);
     find_visible_cells();
 }
 

@@ -38,8 +38,8 @@ class PreparedScene {
 public:
     // Throws Error (data) when the field does not fit the mesh or has no finite value.
     //
-    // `surface_margin`: how far below an isovalue its surface begins (PreparedSurfaces). Of the rules only `culling` counts here.
-    explicit PreparedScene(Scene scene, double surface_margin = 0.0, const PlanRules& rules = {});
+    // `sides`: of isosurfaces (PreparedSurfaces). Of the rules only `culling` counts here.
+    explicit PreparedScene(Scene scene, const SurfaceSides& sides = {}, const PlanRules& rules = {});
 
     const Scene& scene() const { return scene_; }
     const SceneUnits& units() const { return units_; }
@@ -71,7 +71,7 @@ public:
     // of the field's range.
     void set_transfer(std::shared_ptr<const TransferFunction> transfer);
     // Other isosurfaces, or other shading or lights of them; null: none. Throws Error as `validate` does, and then nothing has changed.
-    void set_surfaces(std::shared_ptr<const SurfaceScene> surfaces);
+    void set_surfaces(std::shared_ptr<const SurfaceScene> surfaces, const SurfaceSides& sides = {});
 
     // The bins of a cell's lowest and highest scalar; low > high where one is not finite.
     struct BinRange {
@@ -91,7 +91,6 @@ private:
     std::optional<double> mean_chord_;  // once somebody has asked
     std::unique_ptr<const RayIndex> ray_index_;  // once an order was to be judged
     std::vector<BinRange> bins_, opacity_bins_;  // #T; none without an opacity field
-    double surface_margin_;
     std::optional<PreparedSurfaces> surfaces_;
     std::vector<std::uint8_t> visible_;
     std::vector<CellId> any_order_;  // once somebody has asked

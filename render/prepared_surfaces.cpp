@@ -24,11 +24,22 @@ float normalized(const SceneUnits& units, double value) {
     return static_cast<float>(std::clamp(units.normalized(value), -1.0, 2.0));
 }
 
+// The first texel that is not below the isovalue, as the table has it to the bit. scalar_low < value <= scalar_high.
+int first_texel(const SceneUnits& units, double value, int size) {
+    const auto below = [&](int i) { return IsoSurfaceTable::scalar_at(units.scalar_low, units.scalar_high, size, i) < value; };
+    auto texel = static_cast<int>(std::clamp(std::ceil(units.normalized(value) * (size - 1)), 0.0, size - 1.0));
+    while (texel > 0 && !below(texel - 1)) --texel;
+    while (texel + 1 < size && below(texel)) ++texel;
+    return texel;
+}
+
 // Scalars lie in 0 .. 1: what is not met there stands well outside.
-float threshold_of(const SceneUnits& units, double value, double margin) {
+float threshold_of(const SceneUnits& units, double value, const SurfaceSides& sides) {
     if (value <= units.scalar_low) return -1.0F;
     if (value > units.scalar_high) return 2.0F;
-    return static_cast<float>(units.normalized(value) - margin);
+    double threshold = units.normalized(value);
+    if (sides.table_size > 0) threshold = (first_texel(units, value, sides.table_size) - 0.5) / sides.texel_scale();
+    return static_cast<float>(threshold - sides.margin);
 }
 
 std::vector<std::int32_t> find_levels(const TetMesh& mesh, const ScalarField& field, const SceneUnits& units,
@@ -88,12 +99,12 @@ std::vector<glm::vec3> over_the_steepest(const std::vector<glm::dvec3>& gradient
 
 }  // namespace
 
-PreparedSurfaces::PreparedSurfaces(const Scene& scene, const SceneUnits& units, double margin, const PreparedSurfaces* before)
-    : scene_(scene.surfaces.get()) {
+PreparedSurfaces::PreparedSurfaces(const Scene& scene, const SceneUnits& units, const SurfaceSides& sides, const PreparedSurfaces* before)
+    : scene_(scene.surfaces.get()), sides_(sides) {
     assert(has_surfaces(scene) && scene.field->location == FieldLocation::points);
     for (const IsoSurface& surface : scene_->isosurfaces.surfaces()) {
         values_.push_back(normalized(units, surface.value));
-        thresholds_.push_back(threshold_of(units, surface.value, margin));
+        thresholds_.push_back(threshold_of(units, surface.value, sides));
     }
     levels_ = find_levels(*scene.mesh, *scene.field, units, thresholds_);
     for (CellId cell = 0; cell < levels_.size(); ++cell)

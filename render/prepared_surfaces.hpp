@@ -5,7 +5,7 @@
 //
 // This is the one place that says which cells an isovalue crosses. Sides are told by the scalars that are drawn, normalized to the
 // field's range and rounded to float32, against the *threshold* of each isovalue, rounded in the same way: a point whose scalar is the
-// isovalue stays on it (classify/isosurface.hpp: not below). A threshold is the isovalue less the backend's margin. No bins and no
+// isovalue stays on it (classify/isosurface.hpp: not below). Where the thresholds stand, the backend says (SurfaceSides). No bins and no
 // span space: one search of the list for each point and one look at each cell, whatever the number of surfaces, cost less than the
 // gradients do (render/README.md).
 #pragma once
@@ -30,6 +30,18 @@ struct SceneUnits;
 // and cells that hold it, as those of regular grids often do) are all on one side, whichever face tells. [field ranges]
 inline constexpr double float32_margin = 0x1p-21;
 
+// Where the threshold of an isovalue stands: at the isovalue or, where a table of so many texels an axis tells the surfaces
+// (IsoSurfaceTable), where the nearest texel changes that is below the isovalue to one that is not; less the margin.
+struct SurfaceSides {
+    double margin = 0.0;  // [field ranges]
+    int table_size = 0;   // 0: no table
+
+    // The texel of a scalar s is ⌊s·texel_scale() + texel_shift()⌋.
+    double texel_scale() const { return table_size - 1; }
+    double texel_shift() const { return 0.5 + margin * texel_scale(); }
+    bool operator==(const SurfaceSides&) const = default;
+};
+
 // The level of a scalar: how many thresholds it is not below, 0 .. #values. A segment crosses the surfaces between the levels of its
 // ends; a cell whose scalars have one level is crossed by none, whatever rounding does to scalars inside.
 class PreparedSurfaces {
@@ -38,12 +50,13 @@ public:
 
     // Of a scene that has_surfaces; the scene's field must outlive it. `before`: of the same mesh and field, whose gradients serve again;
     // or null.
-    PreparedSurfaces(const Scene& scene, const SceneUnits& units, double margin = 0.0, const PreparedSurfaces* before = nullptr);
+    PreparedSurfaces(const Scene& scene, const SceneUnits& units, const SurfaceSides& sides = {}, const PreparedSurfaces* before = nullptr);
 
     const SurfaceScene& scene() const { return *scene_; }
+    const SurfaceSides& sides() const { return sides_; }
     // Normalized, ascending; equal where float32 cannot tell two isovalues apart.
     std::span<const float> values() const { return values_; }
-    // Of their sides: less by the margin; where the field does not reach the isovalue, well outside of 0..1. Ascending.
+    // Of their sides; where the field does not reach the isovalue, well outside of 0..1. Ascending.
     std::span<const float> thresholds() const { return thresholds_; }
 
     // #T: the level of all scalars of the cell, crossed_cell where its points have several, no_scalar where one is not finite.
@@ -70,6 +83,7 @@ private:
     void find_jumps(const Scene& scene, const SceneUnits& units);
 
     const SurfaceScene* scene_;
+    SurfaceSides sides_;
     std::vector<float> values_, thresholds_;
     std::vector<std::int32_t> levels_;
     std::vector<CellId> crossed_;

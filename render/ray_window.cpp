@@ -72,7 +72,7 @@ RayWindow ray_window(const Scene& scene, const glm::dvec3& middle, const ViewRay
         for (const glm::dvec3& point : body.points) places.push_back(frame(point));
         for (const auto& triangle : body.triangles) {
             const auto t = meet({places[triangle[0]], places[triangle[1]], places[triangle[2]]});
-            if (!t || *t < ray.start || (window.body && *t >= window.body->t)) continue;
+            if (!t || !(*t >= ray.start) || (window.body && !(*t < window.body->t))) continue;
             const glm::dvec3& a = body.points[triangle[0]];
             window.body = {*t, &body, glm::cross(body.points[triangle[1]] - a, body.points[triangle[2]] - a)};
         }

@@ -32,6 +32,8 @@ std::optional<Error> refusal(Backend backend, const Quality& quality, FieldsRead
     }
     if (light_at_vertices(quality.method))
         return instead("--method", "a method of light per pixel for the CPU backend", to_string(quality.method), use_gl);
+    if (quality.surfaces.kind != SurfaceMethodKind::exact)
+        return instead("--iso-method", "exact for the CPU backend", to_string(quality.surfaces), use_gl);
     if (quality.target != TargetFormat::rgba32f)
         return instead("--target", "rgba32f for the CPU backend", to_string(quality.target), use_gl);
     return std::nullopt;

@@ -15,6 +15,7 @@
 #include "render/plan_rules.hpp"
 #include "render/scene.hpp"
 #include "render/statistics.hpp"
+#include "render/surface_method.hpp"
 #include "render/target_format.hpp"
 #include "sort/view_order.hpp"
 
@@ -28,6 +29,7 @@ struct Quality {
     // CPU backend: each pixel sorts what its ray meets, instead of an order of cells. Exact at pixel centres for any mesh whose cells do
     // not overlap, cyclic or not; `order` and `check_rays` do not count then.
     bool order_per_pixel = false;
+    SurfaceMethod surfaces = {};                  // how isosurfaces are found; the CPU backend draws `exact` only
     std::size_t check_rays = 0;                   // after the frame, for the statistics: rays that judge the order
 };
 

@@ -43,9 +43,18 @@ std::vector<Quality> trade_qualities() {
     return qualities;
 }
 
+std::vector<Quality> surface_qualities() {
+    std::vector<Quality> qualities = trade_qualities();
+    std::erase_if(qualities, [](const Quality& quality) { return !takes_surfaces(quality.method); });
+    for (const char* method : {"integral", "preint2d-exp:256", "preint3d:64"})
+        for (const char* surfaces : {"table", "combined"})
+            qualities.push_back({.method = parse_method(method), .surfaces = parse_surface_method(surfaces)});
+    return qualities;
+}
+
 std::string to_string(const Quality& quality) {
-    const bool usual = quality.target == Quality{}.target;
-    return to_string(quality.method) + (usual ? "" : ", " + to_string(quality.target));
+    const bool usual = quality.target == Quality{}.target, exact = quality.surfaces.kind == SurfaceMethodKind::exact;
+    return to_string(quality.method) + (exact ? "" : ", " + to_string(quality.surfaces)) + (usual ? "" : ", " + to_string(quality.target));
 }
 
 std::vector<FrameTimes> time_frames(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,

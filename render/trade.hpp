@@ -30,8 +30,10 @@ struct TradeRow {
 // The choices that `cellproj trade` compares unless told otherwise: every kind, tables of several sizes and storages, and
 // the formats of the framebuffer.
 std::vector<Quality> trade_qualities();
+// The same for scenes with isosurfaces: those that draw them, and the ways to them that are not exact.
+std::vector<Quality> surface_qualities();
 
-// "integral", "integral, rgba8": the method, and the format of the framebuffer unless it is the usual one.
+// "integral", "integral, table:512, rgba8": the method, that of isosurfaces and the format of the framebuffer unless they are the usual ones.
 std::string to_string(const Quality& quality);
 
 struct TradeOptions {

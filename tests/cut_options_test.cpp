@@ -49,6 +49,13 @@ TEST_F(CutOptions, PlanesAndBoxesCut) {
     EXPECT_EQ(seen("--clip 0,0,1:0,0,1 --clip 0,0,1.5:0,0,-1"), seen("--clip-box -9,-9,1,9,9,1.5"));
 }
 
+// Of radius 1 about the origin, which is a corner of the voxels.
+TEST_F(CutOptions, TheSphereOfTheDemoIsABody) {
+    const std::string box = " --clip-box 1.9,1.9,1.9,2,2,2";
+    EXPECT_EQ(seen("--surface demo:sphere:red" + box), (Pixel{255, 255, 255}));  // the middle is 1.4 from its axis
+    EXPECT_EQ(run("--surface demo:sphere" + box).code, 0);
+}
+
 TEST_F(CutOptions, ArePutDownInThePicture) {
     EXPECT_EQ(run("--clip 0,0,1:0,0,1 --surface square.off:red").code, 0);
     EXPECT_NE(content("p.png").find("--clip 0,0,1:0,0,1 --surface square.off:red"), std::string::npos);

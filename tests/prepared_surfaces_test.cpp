@@ -41,8 +41,8 @@ TEST(PreparedSurfaces, CrossedCellsHavePointsOnBothSides) {
     Scene scene = waves_with({{0.5}}, Shading::unlit);
     for (const double margin : {0.0, float32_margin}) {
         for (const IsoSurface& surface : hard_values(*scene.field)) {
-            scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces({surface}), Shading::unlit, {}});
-            const PreparedSurfaces prepared(scene, units_of(scene), margin);
+            scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::vector{surface}), Shading::unlit, {}});
+            const PreparedSurfaces prepared(scene, units_of(scene), {.margin = margin});
             // Scalars within a margin of an isovalue are told by float32; none but those that have it are so near here.
             std::vector<CellId> crossed;
             for (CellId cell = 0; cell < scene.mesh->tets.size(); ++cell) {

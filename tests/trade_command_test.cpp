@@ -76,7 +76,7 @@ TEST_F(TradeCommand, WritesTheSameTableFourTimes) {
     std::istringstream csv(content("t.csv"));
     std::string line;
     std::getline(csv, line);
-    EXPECT_EQ(line, "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front");
+    EXPECT_EQ(line, "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front,iso_method");
     double last = 0;
     std::size_t front = 0;
     for (const auto& row : rows) {
@@ -95,6 +95,23 @@ TEST_F(TradeCommand, WritesTheSameTableFourTimes) {
     EXPECT_FALSE(std::getline(csv, line)) << line;
     EXPECT_GE(front, 1U);
     EXPECT_NE(outcome.text.find("pixels that see the mesh judged, medians of 2 frames"), std::string::npos) << outcome.text;
+}
+
+TEST_F(TradeCommand, MeasuresIsosurfaces) {
+    const Outcome outcome = run("trade", "--rounds 1 --iso 7:white:0.5 --volume --method integral --iso-method exact --iso-method table:65 --iso-method combined:65 --json t.json");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    const auto json = nlohmann::json::parse(content("t.json"));
+    std::vector<std::string> names;
+    for (const auto& row : json.at("methods")) {
+        names.push_back(row.at("iso_method"));
+        const double worst = row.at("error").at("color").at("maximum");
+        EXPECT_TRUE(names.back() == "exact" ? worst < 1e-3 : worst > 1e-3) << names.back() << " " << worst;
+    }
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(names, (std::vector<std::string>{"combined:65", "exact", "table:65"}));
+    expect_refused(2, "trade", "--iso-method table", {"--iso"});
+    expect_refused(1, "render", "--iso 7 --iso-method tables -o p.png", {"--iso-method", "tables"});
+    expect_refused(1, "render", "--iso 7 --iso-method table --backend cpu -o p.png", {"--iso-method", "gl"});
 }
 
 TEST_F(TradeCommand, ThePageHoldsAllItShows) {

@@ -101,6 +101,19 @@ TEST(Trade, QualitiesAreToldApartByMethodAndTarget) {
     for (const Quality& quality : trade_qualities()) names.push_back(to_string(quality));
     std::sort(names.begin(), names.end());
     EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
+    const Quality table{.target = TargetFormat::rgba8, .surfaces = parse_surface_method("table:9")};
+    EXPECT_EQ(to_string(table), "integral, table:9, rgba8");
+}
+
+// Light at vertices and by halves know no place in a segment.
+TEST(Trade, ScenesWithSurfacesAreDrawnByMethodsThatCanAndByEveryWayToThem) {
+    std::vector<std::string> names;
+    for (const Quality& quality : surface_qualities()) {
+        EXPECT_TRUE(takes_surfaces(quality.method)) << to_string(quality);
+        names.push_back(to_string(quality));
+    }
+    for (const char* name : {"integral", "average", "integral, table:512", "integral, combined:512", "preint3d:64, table:512", "integral, rgba8"})
+        EXPECT_EQ(std::ranges::count(names, name), 1) << name;
 }
 
 TEST(TradeChoice, TheWidestDifferencesComeFirstAndOnlyDifferences) {

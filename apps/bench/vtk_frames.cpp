@@ -2,15 +2,9 @@
 #include "apps/bench/vtk_frames.hpp"
 
 #include <vtkAutoInit.h>
-#include <vtkCamera.h>
-#include <vtkCellArray.h>
 #include <vtkColorTransferFunction.h>
-#include <vtkFloatArray.h>
-#include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPiecewiseFunction.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkProjectedTetrahedraMapper.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -27,39 +21,14 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "apps/bench/vtk_grid.hpp"
+
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2)
 
 namespace cellproj::bench {
 
 namespace {
-
-vtkSmartPointer<vtkUnstructuredGrid> make_grid(const Scene& scene) {
-    const TetMesh& mesh = *scene.mesh;
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToFloat();
-    points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
-    vtkNew<vtkFloatArray> scalars;
-    scalars->SetName("f");
-    scalars->SetNumberOfValues(static_cast<vtkIdType>(mesh.points.size()));
-    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-        const auto id = static_cast<vtkIdType>(v);
-        points->SetPoint(id, mesh.points[v].x, mesh.points[v].y, mesh.points[v].z);
-        scalars->SetValue(id, static_cast<float>(scene.field->values[v]));
-    }
-    vtkNew<vtkIdTypeArray> corners;
-    corners->SetNumberOfValues(static_cast<vtkIdType>(4 * mesh.tets.size()));
-    vtkIdType next = 0;
-    for (const auto& tet : mesh.tets)
-        for (const VertexId v : tet) corners->SetValue(next++, v);
-    vtkNew<vtkCellArray> cells;
-    cells->SetData(4, corners);
-    auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-    grid->SetPoints(points);
-    grid->SetCells(VTK_TETRA, cells);
-    grid->GetPointData()->SetScalars(scalars);
-    return grid;
-}
 
 vtkSmartPointer<vtkVolumeProperty> make_property(const TransferFunction& transfer) {
     double densest = 0;
@@ -102,7 +71,7 @@ vtkSmartPointer<vtkUnstructuredGridVolumeMapper> make_mapper(const std::string& 
 class VtkMapper final : public Contender {
 public:
     VtkMapper(const std::string& name, const Scene& scene, ImageSize size)
-        : name_(name), size_(size), grid_(make_grid(scene)), property_(make_property(*scene.transfer)) {}
+        : name_(name), size_(size), grid_(make_vtk_grid(scene)), property_(make_property(*scene.transfer)) {}
 
     // VTK has nothing to do before the first frame but to open its window.
     void set_up() override {
@@ -120,13 +89,7 @@ public:
     }
 
     void draw(const Camera& camera) override {
-        vtkCamera* view = renderer_->GetActiveCamera();
-        view->SetPosition(camera.eye.x, camera.eye.y, camera.eye.z);
-        view->SetFocalPoint(camera.center.x, camera.center.y, camera.center.z);
-        view->SetViewUp(camera.up.x, camera.up.y, camera.up.z);
-        view->SetParallelProjection(camera.projection == Camera::Projection::parallel);
-        view->SetParallelScale(0.5 * camera.height);
-        view->SetViewAngle(camera.fov_y_degrees);
+        set_vtk_view(*renderer_->GetActiveCamera(), camera);
         renderer_->ResetCameraClippingRange();
         window_->Render();
         window_->WaitForCompletion();

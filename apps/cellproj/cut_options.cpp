@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "apps/scenes/sphere_flow.hpp"
 #include "mesh/error.hpp"
 #include "mesh/surface.hpp"
 #include "option_text.hpp"
@@ -15,6 +16,8 @@
 namespace cellproj::cli {
 
 namespace {
+
+constexpr const char* embedded_body = "demo:sphere";
 
 [[noreturn]] void refuse(const char* option, const std::string& expected, const std::string& found, const std::string& advice) {
     throw Error({ErrorKind::option, option, expected, "\"" + found + "\"", advice});
@@ -51,7 +54,7 @@ void add_cut_options(CLI::App& command, CutOptions& options) {
         ->allow_extra_args(false);
     command.add_option("--clip-box", options.box, "Draw only what is inside a box: X0,Y0,Z0,X1,Y1,Z1");
     command.add_option("--surface", options.surfaces,
-                       std::string("Draw an opaque body, a surface of STL, OFF, PLY, OBJ or VTP: FILE[:COLOR] (again for more); it is not clipped. COLOR: ") +
+                       std::string("Draw an opaque body, a surface of STL, OFF, PLY, OBJ or VTP, or that of demo:sphere: FILE[:COLOR] (again for more); it is not clipped. COLOR: ") +
                            color_forms + "; default: gray")
         ->allow_extra_args(false);
 }
@@ -68,7 +71,7 @@ ClipRegion parse_region(const CutOptions& options) {
 BodyChoice parse_body(const std::string& text) {
     const glm::dvec3 gray(0.7);
     const std::size_t colon = text.rfind(':');
-    if (colon == std::string::npos || std::filesystem::exists(text)) return {text, gray};
+    if (colon == std::string::npos || text == embedded_body || std::filesystem::exists(text)) return {text, gray};
     const auto color = to_color(std::string_view(text).substr(colon + 1));
     if (!color) refuse("--surface", std::string("a colour behind the file: ") + color_forms, text.substr(colon + 1), "leave it out for gray");
     return {text.substr(0, colon), *color};
@@ -88,7 +91,7 @@ void add_cuts(const CutOptions& options, const Lighting& lighting, Scene& scene)
     BodyScene bodies{.bodies = {}, .lighting = lighting};
     for (const std::string& text : options.surfaces) {
         const BodyChoice choice = parse_body(text);
-        bodies.bodies.push_back(make_body(read_surface(choice.file), choice.color));
+        bodies.bodies.push_back(make_body(choice.file == embedded_body ? make_sphere_surface() : read_surface(choice.file), choice.color));
     }
     scene.bodies = std::make_shared<const BodyScene>(std::move(bodies));
 }

@@ -26,7 +26,7 @@ void add_cut_options(CLI::App& command, CutOptions& options);
 
 // What all of --clip and --clip-box keep; no half spaces: everything. Throws Error (option).
 ClipRegion parse_region(const CutOptions& options);
-// A file and its colour; throws Error (option).
+// A file, or demo:sphere, and its colour; throws Error (option).
 struct BodyChoice {
     std::string file;
     glm::dvec3 color;

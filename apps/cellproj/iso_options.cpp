@@ -44,6 +44,10 @@ void add_surfaces(std::string_view text, const TransferFunction& colors, std::ve
 
 }  // namespace
 
+const char* const iso_method_help =
+    "How isosurfaces are found in a cell: exact, where the ray crosses them; table:N, all of a cell by one lookup in a table of N² scalars, and "
+    "combined:N, likewise, part before and part behind the cell's medium: both approximate, for comparison (gl; render/README.md)";
+
 void add_iso_options(CLI::App& command, IsoOptions& options) {
     CLI::Option* iso = command.add_option("--iso", options.surfaces,
                                           std::string("Draw isosurfaces of --field: VALUE[,VALUE...][:COLOR[:OPACITY]] (again for more). COLOR: ") +

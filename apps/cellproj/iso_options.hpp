@@ -26,6 +26,9 @@ struct IsoOptions {
     bool any() const { return !surfaces.empty(); }
 };
 
+// The words of `--iso-method`.
+extern const char* const iso_method_help;
+
 // Into `options`, which must live as long as the command.
 void add_iso_options(CLI::App& command, IsoOptions& options);
 

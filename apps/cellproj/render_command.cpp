@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "mesh/error.hpp"
 #include "progress.hpp"
+#include "render/depth_window.hpp"
 #include "render/output_file.hpp"
 #include "render/plan.hpp"
 #include "render/renderer.hpp"
@@ -31,6 +32,7 @@ struct RenderOptions {
     AnnotationOptions annotations;
     std::filesystem::path output, stats;
     std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto";
+    std::string iso_method = to_string(SurfaceMethod{});
     std::optional<double> max_error;  // --max-error: the method is chosen by measuring
     bool verify_order = false, explain = false;
     std::vector<double> background{1, 1, 1};
@@ -157,7 +159,10 @@ Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene,
                         double max_error, const Quality& base, double& measured) {
     ChoiceOptions how{.base = base};
     how.base.check_rays = 0;  // the chosen one's order is proved once
-    how.draws = [backend, fields = fields_read(scene)](const Quality& quality) { return draws(backend, quality, fields); };
+    how.draws = [backend, &scene](const Quality& quality) {
+        return draws(backend, quality, fields_read(scene)) && (!has_surfaces(scene) || takes_surfaces(quality.method)) &&
+               !(DepthWindow::is_needed(scene) && light_at_vertices(quality.method));  // which knows no place in a segment
+    };
     const QualityChoice choice = [&] {
         const Progress progress("choosing a method");
         return choose_quality(renderer, scene, cameras.front(), size, max_error, how);
@@ -182,6 +187,7 @@ void render_pictures(const RenderOptions& options) {
                     .target = parse_target_format(options.target, "--target"),
                     .order = order_method(options.order),  // nothing: auto, pixel
                     .order_per_pixel = options.order == "pixel",
+                    .surfaces = parse_surface_method(options.iso_method, "--iso-method"),
                     .check_rays = options.verify_order ? rays_of_proof : 0};
     const FieldsRead fields = options.scene.fields();
     const BackendWish wish = parse_backend(options.backend);
@@ -252,6 +258,7 @@ void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Render a mesh to a picture.");
     add_scene_options(*command, options->scene);
     add_iso_options(*command, options->scene.iso);
+    command->add_option("--iso-method", options->iso_method, iso_method_help)->capture_default_str()->needs("--iso");
     add_cut_options(*command, options->scene.cuts);
     command->add_option("-o,--output", options->output, "The picture: .png or .exr; several become NAME_000.png …")
         ->required();

@@ -24,7 +24,7 @@ namespace {
 
 struct TradeCommandOptions {
     SceneOptions scene;
-    std::vector<std::string> methods, targets;  // both empty: trade_qualities
+    std::vector<std::string> methods, targets, iso_methods;  // all empty: trade_qualities, surface_qualities
     std::filesystem::path page, csv, json;
     std::optional<std::size_t> sample;
     int rounds = 5;
@@ -75,29 +75,43 @@ Backend backend_for(const TradeCommandOptions& options, const Quality& quality) 
 
 // Those that can draw the scene.
 std::vector<Quality> possible_qualities(const TradeCommandOptions& options) {
-    std::vector<Quality> qualities = trade_qualities();
+    std::vector<Quality> qualities = options.scene.iso.any() ? surface_qualities() : trade_qualities();
     std::erase_if(qualities, [&](const Quality& quality) {
         return !draws(backend_for(options, quality), quality, options.scene.fields());
     });
     return qualities;
 }
 
-// Every method in every target; the usual one where only the other is given.
+// Each of the qualities, changed in each of the ways that were asked for.
+template <class Change>
+std::vector<Quality> varied(const std::vector<Quality>& qualities, const std::vector<std::string>& ways, Change change) {
+    if (ways.empty()) return qualities;
+    std::vector<Quality> all;
+    for (const std::string& way : ways)
+        for (Quality quality : qualities) {
+            change(quality, way);
+            all.push_back(quality);
+        }
+    return all;
+}
+
+// Every method in every target and with every way to isosurfaces; the usual one of what is not given.
 std::vector<Quality> choose_qualities(const TradeCommandOptions& options) {
-    if (options.methods.empty() && options.targets.empty()) return possible_qualities(options);
-    std::vector<Quality> in_usual_target;
-    for (const std::string& text : options.methods) in_usual_target.push_back({.method = parse_method(text, "--method")});
+    if (options.methods.empty() && options.targets.empty() && options.iso_methods.empty()) return possible_qualities(options);
+    std::vector<Quality> usual;
+    for (const std::string& text : options.methods) usual.push_back({.method = parse_method(text, "--method")});
     if (options.methods.empty()) {
-        in_usual_target = possible_qualities(options);
-        std::erase_if(in_usual_target, [](const Quality& quality) { return quality.target != Quality{}.target; });
+        usual = possible_qualities(options);
+        std::erase_if(usual, [](const Quality& quality) {
+            return quality.target != Quality{}.target || (quality.surfaces.kind != SurfaceMethodKind::exact);
+        });
     }
-    if (options.targets.empty()) return in_usual_target;
-    std::vector<Quality> qualities;
-    for (const std::string& target : options.targets) {
-        for (const Quality& quality : in_usual_target)
-            qualities.push_back({.method = quality.method, .target = parse_target_format(target, "--target")});
-    }
-    return qualities;
+    usual = varied(usual, options.iso_methods, [](Quality& quality, const std::string& text) {
+        quality.surfaces = parse_surface_method(text, "--iso-method");
+    });
+    return varied(usual, options.targets, [](Quality& quality, const std::string& text) {
+        quality.target = parse_target_format(text, "--target");
+    });
 }
 
 void check_files(const TradeCommandOptions& options) {
@@ -186,6 +200,9 @@ void add_trade_command(CLI::App& app) {
         ->allow_extra_args(false);
     command->add_option("--target", options->targets, "Blend the cells in this format (again for more): rgba8, rgba16, rgba16f or rgba32f")
         ->allow_extra_args(false);
+    add_iso_options(*command, options->scene.iso);
+    command->add_option("--iso-method", options->iso_methods, std::string(iso_method_help) + " (again for more)")
+        ->allow_extra_args(false)->needs("--iso");
     command->add_option("--sample", options->sample,
                         "Pixels judged by rays in float64; default: all that see the mesh when that takes less than 30 s, else 20000")
         ->check(CLI::Range(1, 100000000));

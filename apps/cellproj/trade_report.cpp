@@ -63,11 +63,12 @@ std::string to_table(const TradeReport& report) {
 }
 
 std::string to_csv(const TradeReport& report) {
-    std::string text = "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front\n";
+    std::string text = "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front,iso_method\n";
     for (const TradeRow& row : report.rows) {
-        text += line("%s,%s,%s,%.3f,%.3f,%zu,%.6e,%.6e,%.6e,%.6e,%.6e,%d\n", to_string(row.quality.method).c_str(),
+        text += line("%s,%s,%s,%.3f,%.3f,%zu,%.6e,%.6e,%.6e,%.6e,%.6e,%d,%s\n", to_string(row.quality.method).c_str(),
                      to_string(row.quality.target).c_str(), row.backend.c_str(), row.frame_ms, row.set_up_ms, row.table_bytes, row.error.color.rms, row.error.color.percentile_99,
-                     row.error.color.maximum, row.error.opacity.rms, row.error.opacity.maximum, row.on_front ? 1 : 0);
+                     row.error.color.maximum, row.error.opacity.rms, row.error.opacity.maximum, row.on_front ? 1 : 0,
+                     to_string(row.quality.surfaces).c_str());
     }
     return text;
 }
@@ -81,6 +82,7 @@ std::string to_json(const TradeReport& report) {
     for (const TradeRow& row : report.rows) {
         rows.push_back({{"method", to_string(row.quality.method)},
                         {"target", to_string(row.quality.target)},
+                        {"iso_method", to_string(row.quality.surfaces)},
                         {"backend", row.backend},
                         {"ms", {{"set_up", row.set_up_ms}, {"frame", row.frame_ms}}},
                         {"table_bytes", row.table_bytes},

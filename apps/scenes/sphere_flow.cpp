@@ -167,6 +167,12 @@ PiecewiseLinearComplex make_sphere_flow_complex() {
     return complex;
 }
 
+Surface make_sphere_surface() {
+    PiecewiseLinearComplex sphere;
+    add_sphere(sphere, icosphere(4));
+    return {.name = "demo:sphere", .points = std::move(sphere.points), .polygons = std::move(sphere.facets), .point_fields = {}};
+}
+
 TetMesh make_sphere_flow_mesh(const MesherOptions& options) {
     TetMesh mesh = tetrahedralize(make_sphere_flow_complex(), options);
     Field pressure{"cp", 1, {}};

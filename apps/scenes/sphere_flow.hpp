@@ -10,6 +10,7 @@
 
 #include "classify/transfer_function.hpp"
 #include "mesh/mesher.hpp"
+#include "mesh/surface.hpp"
 #include "mesh/tet_mesh.hpp"
 #include "project/camera.hpp"
 
@@ -27,6 +28,9 @@ double sphere_pressure_coefficient(const glm::dvec3& point);
 // The sphere (an icosphere whose vertices have radius 1) and the box, with points on concentric shells between them
 // that grow coarser outwards: the same complex on every machine.
 PiecewiseLinearComplex make_sphere_flow_complex();
+
+// The sphere alone, as a body in the flow: the facets of the hole in that complex.
+Surface make_sphere_surface();
 
 // That complex cut into about 100 000 tetrahedra, with the point fields "cp" (first) and "velocity". Errors of
 // `tetrahedralize`.

@@ -128,7 +128,7 @@ void CpuRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
         classification_.reset();
-        prepared_.emplace(scene, 0.0, rules_);
+        prepared_.emplace(scene, SurfaceSides{}, rules_);
         mesh_.set_scene(*prepared_);
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);

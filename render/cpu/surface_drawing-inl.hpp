@@ -203,35 +203,66 @@ HWY_INLINE void append_ends(const TileState& tile, PendingFragments& pending) {
 }
 HWY_INLINE void set_ends(const SurfaceEnds& ends, std::size_t fragment, TileState& tile) { tile.surfaces->ends[fragment] = ends; }
 
+// What a pixel holds while surfaces that follow each other in it are added: from one to the next only a product waits, not the memory.
+class PixelSum {
+public:
+    explicit PixelSum(float (*rgba)[4]) : rgba_(rgba) {}
+    ~PixelSum() { store(); }
+    PixelSum(const PixelSum&) = delete;
+    PixelSum& operator=(const PixelSum&) = delete;
+
+    HWY_INLINE void add(std::int32_t pixel, const float* light) {
+        if (pixel != pixel_) {
+            store();
+            pixel_ = pixel;
+            std::memcpy(sum_, rgba_[pixel], sizeof sum_);
+            transmitted_ = 1.0F - sum_[3];
+        }
+        for (std::size_t channel = 0; channel < 4; ++channel) sum_[channel] += transmitted_ * light[channel];
+        transmitted_ *= 1.0F - light[3];
+    }
+
+private:
+    HWY_INLINE void store() const {
+        if (pixel_ >= 0) std::memcpy(rgba_[pixel_], sum_, sizeof sum_);
+    }
+
+    float (*rgba_)[4];
+    std::int32_t pixel_ = -1;
+    float sum_[4] = {}, transmitted_ = 1.0F;
+};
+
 // Composites the pieces and the surfaces that end them behind what is there, and forgets them.
 template <class D>
 HWY_NOINLINE void composite_pieces(D d, const ScreenCells& cells, const Shading& shading, TileState& tile) {
     SurfaceTile& s = *tile.surfaces;
     const std::size_t lanes = hn::Lanes(d);
     shade_hits(d, cells, tile.x, tile.y, s.hits);
+    if (!cells.surfaces->medium) {
+        PixelSum sum(tile.rgba);
+        for (std::size_t i = 0; i < s.hits.count; ++i) sum.add(s.hits.pixel[i], s.hits.light + 4 * i);
+    }
     const auto add = [&](std::int32_t pixel, const float* light) HWY_ATTR {
         float* rgba = tile.rgba[pixel];
         const float transmitted = 1.0F - rgba[3];
         for (std::size_t channel = 0; channel < 4; ++channel) rgba[channel] += transmitted * light[channel];
     };
     HWY_ALIGN float light[4 * CellPlanes::columns] = {};
-    if (cells.surfaces->medium) empty_last_vector(d, s.pieces);
+    if (s.pieces.count > 0) empty_last_vector(d, s.pieces);
     for (std::size_t begin = 0; begin < s.pieces.count; begin += lanes) {
-        if (cells.surfaces->medium) {
-            const auto l = shade(d, shading, false, hn::Load(d, s.pieces.front + begin), hn::Load(d, s.pieces.back + begin),
-                                 length_along_ray(d, cells.view, tile, s.pieces, begin));
-            hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
-        }
+        const auto l = shade(d, shading, false, hn::Load(d, s.pieces.front + begin), hn::Load(d, s.pieces.back + begin),
+                             length_along_ray(d, cells.view, tile, s.pieces, begin));
+        hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
         for (std::size_t i = 0; i < HWY_MIN(lanes, s.pieces.count - begin); ++i) {
             const std::int32_t pixel = s.pieces.pixel[begin + i], hit = s.hit[begin + i];
-            if (cells.surfaces->medium) add(pixel, light + 4 * i);
+            add(pixel, light + 4 * i);
             if (hit >= 0) add(pixel, s.hits.light + 4 * hit);
         }
     }
     s.pieces.count = s.hits.count = 0;
 }
 
-// A stretch of medium, and behind it the surface `surface` or none (−1).
+// A stretch of medium, where there is one, and behind it the surface `surface` or none (−1).
 struct RayPiece {
     float front, back, length;
     std::int32_t pixel;
@@ -256,7 +287,12 @@ HWY_INLINE void add_hit(const ScreenSurfaces& surfaces, std::int32_t surface, bo
 template <class D>
 HWY_INLINE void add_piece(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, const RayPiece& piece) {
     SurfaceTile& s = *tile.surfaces;
-    if (piece.surface < 0 && !cells.surfaces->medium) return;
+    if (!cells.surfaces->medium) {
+        if (piece.surface < 0) return;
+        if (s.hits.count == SurfaceHits::capacity) composite_pieces(d, cells, shading, tile);
+        add_hit(*cells.surfaces, piece.surface, piece.rising, piece.gradient, piece.pixel, s.hits);
+        return;
+    }
     if (s.pieces.count == Fragments::capacity) composite_pieces(d, cells, shading, tile);
     const std::size_t i = s.pieces.count++;
     s.pieces.front[i] = piece.front;

@@ -119,11 +119,11 @@ void GlRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;
     if (!same_cells) {
         surfaces_.reset();
-        prepared_.emplace(scene, float32_margin, rules_);
+        prepared_.emplace(scene, SurfacePass::sides_for(quality.surfaces), rules_);
     } else if (!same_transfer) {
         prepared_->set_transfer(scene.transfer);
     }
-    prepare_surfaces(scene);
+    prepare_surfaces(scene, quality);
     plan_ = plan_scene(prepared_->facts(), quality, Backend::gl_osmesa, rules_);
     if (plan_.sorts()) prepared_->sorter();
     if (!same_transfer || !(shader_ || lighting_) || method_ != plan_.method) prepare_light(scene, plan_.method, same_cells);
@@ -151,12 +151,16 @@ void GlRenderer::prepare_light(const Scene& scene, const Method& method, bool sa
     method_ = method;
 }
 
-void GlRenderer::prepare_surfaces(const Scene& scene) {
-    if (prepared_->scene().surfaces != scene.surfaces) {
-        prepared_->set_surfaces(scene.surfaces);
+void GlRenderer::prepare_surfaces(const Scene& scene, const Quality& quality) {
+    const SurfaceSides sides = SurfacePass::sides_for(quality.surfaces);
+    const PreparedSurfaces* before = prepared_->surfaces();
+    if (prepared_->scene().surfaces != scene.surfaces || (before && before->sides() != sides)) {
+        prepared_->set_surfaces(scene.surfaces, sides);
         surfaces_.reset();
     }
-    if (!surfaces_ && has_surfaces(scene)) surfaces_ = std::make_unique<SurfacePass>(*prepared_);
+    if (!has_surfaces(scene) || (surfaces_ && surfaces_->method() == quality.surfaces)) return;
+    surfaces_.reset();  // none behind a failure
+    surfaces_ = std::make_unique<SurfacePass>(*prepared_, quality.surfaces);
 }
 
 const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
@@ -234,7 +238,7 @@ void GlRenderer::describe(Statistics& statistics, const Quality& quality, const 
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
-    statistics.table_bytes = shader_ ? shader_->table_bytes() : 0;
+    statistics.table_bytes = (shader_ ? shader_->table_bytes() : 0) + (surfaces_ ? surfaces_->table_bytes() : 0);
     statistics.backend = context_->name();
     statistics.backend_version = driver_version();
     statistics.plan = plan.decisions;

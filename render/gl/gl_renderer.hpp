@@ -35,7 +35,7 @@ public:
 private:
     void prepare_here(const Scene& scene, const Quality& quality);
     void prepare_light(const Scene& scene, const Method& method, bool same_cells);
-    void prepare_surfaces(const Scene& scene);
+    void prepare_surfaces(const Scene& scene, const Quality& quality);
     ViewOrder find_order(const Plan& plan, const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
     void describe(Statistics& statistics, const Quality& quality, const Plan& plan) const;
     const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);

@@ -2,6 +2,8 @@
 #include "render/gl/surface_pass.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -15,7 +17,7 @@ namespace cellproj::gl {
 namespace {
 
 // Behind those of the methods (segment_shader.hpp).
-constexpr unsigned int surfaces_unit = 8, lights_unit = 9;
+constexpr unsigned int surfaces_unit = 8, lights_unit = 9, layers_unit = 11, first_unit = 12;
 
 void append(std::vector<float>& texels, const glm::dvec3& v, double last) {
     for (int axis = 0; axis < 3; ++axis) texels.push_back(static_cast<float>(v[axis]));
@@ -53,20 +55,49 @@ Texture upload(const std::vector<DirectionalLight>& lights) {
 
 void SurfacePass::require_drawn(const Scene& scene, const Quality& quality) {
     if (!has_surfaces(scene)) return;
-    if (light_at_vertices(quality.method) || quality.method.blending != Blending::once)
+    if (!takes_surfaces(quality.method))
         throw Error({ErrorKind::option, "--method", "one of light per pixel, blended once, for a scene with isosurfaces",
                      to_string(quality.method), "use integral, exact or a table"});
 }
 
-SurfacePass::SurfacePass(const PreparedScene& prepared)
-    : prepared_(prepared), list_(upload(*prepared.surfaces())), lights_(upload(prepared.surfaces()->scene().lighting.lights)) {}
+SurfaceSides SurfacePass::sides_for(const SurfaceMethod& method) {
+    return {.margin = float32_margin, .table_size = method.kind == SurfaceMethodKind::exact ? 0 : method.size};
+}
+
+SurfacePass::SurfacePass(const PreparedScene& prepared, const SurfaceMethod& method)
+    : prepared_(prepared), method_(method), list_(upload(*prepared.surfaces())), lights_(upload(scene().lighting.lights)) {
+    assert(prepared.surfaces()->sides() == sides_for(method));
+    if (method.kind != SurfaceMethodKind::exact) upload_tables();
+}
+
+void SurfacePass::upload_tables() {
+    const SceneUnits& units = prepared_.units();
+    // A field of one value crosses nothing: any range will do.
+    const double high = units.scalar_high > units.scalar_low ? units.scalar_high : units.scalar_low + 1.0 + std::abs(units.scalar_low);
+    const IsoSurfaceTable table(scene().isosurfaces, units.scalar_low, high, method_.size);
+    std::vector<float> layers, first;
+    const auto grid = static_cast<std::size_t>(method_.size);
+    layers.reserve(4 * grid * grid);
+    first.reserve(4 * grid * grid);
+    for (std::size_t i = 0; i < table.texels().size(); ++i) {
+        const IsoSurfaceTable::Texel& texel = table.texels()[i];
+        const double front = static_cast<double>(i % grid), back = static_cast<double>(i / grid);
+        layers.insert(layers.end(), {texel.color[0], texel.color[1], texel.color[2], texel.opacity});
+        // Its isovalue rather than its share of the way from texel to texel: the way between the scalars at hand is another.
+        first.insert(first.end(), {static_cast<float>((front + texel.t * (back - front)) / table.intervals()), 0.0F, 0.0F, 0.0F});
+    }
+    layers_ = Texture::table_2d(method_.size, TableStorage::float32, layers);
+    first_ = Texture::table_2d(method_.size, TableStorage::float32, first);
+}
 
 std::string SurfacePass::defines(bool perspective, bool nearest) const {
     const bool medium = prepared_.has_medium(), two_fields = fields_read(prepared_.scene()) == FieldsRead::two;
     const Shading shading = scene().shading;
     return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (medium ? "#define MEDIUM\n" : "") +
            (medium && two_fields ? "#define TWO_FIELDS\n" : "") + (shading != Shading::unlit ? "#define LIT\n" : "") +
-           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "");
+           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
+           (method_.kind != SurfaceMethodKind::exact ? "#define TABLE\n" : "") +
+           (method_.kind == SurfaceMethodKind::combined ? "#define COMBINED\n" : "");
 }
 
 // Sets what the variant reads, no more: a uniform that is not read is none.
@@ -80,12 +111,21 @@ void SurfacePass::bind(const Program& program, const CellStream& cells, const Ne
     if (perspective && (medium || windowed)) set("inverse_near", 1.0 / cells.near_depth());
     if (nearest) set("inverse_nearest", 1.0 / frame.nearest);
     // Of translucent surfaces alone, not cut, unlit or lit by one normal for all of a cell, no place is asked for but that of the eye.
-    if (medium || windowed || nearest || scene().shading == Shading::smooth || (perspective && lit)) {
+    const bool combined = method_.kind == SurfaceMethodKind::combined;
+    if (medium || windowed || nearest || combined || scene().shading == Shading::smooth || (perspective && lit)) {
         const glm::dvec2 center = transform.principal_point();
         program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
         set("pixels_per_unit", transform.pixels_per_unit());
     }
-    list_.bind(surfaces_unit);
+    if (method_.kind == SurfaceMethodKind::exact) {
+        list_.bind(surfaces_unit);
+    } else {
+        const SurfaceSides& sides = prepared_.surfaces()->sides();
+        set("table_scale", sides.texel_scale());
+        set("table_shift", sides.texel_shift());
+        layers_.bind(layers_unit);
+        first_.bind(first_unit);
+    }
     if (!lit) return;
 
     const Lighting& lighting = scene().lighting;

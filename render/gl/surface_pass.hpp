@@ -4,6 +4,7 @@
 // of them are seen and whether they want an order is known to PreparedScene.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "render/cell_stream.hpp"
@@ -19,8 +20,14 @@ public:
     // segment.
     static void require_drawn(const Scene& scene, const Quality& quality);
 
-    // Of a scene that has_surfaces, as they are now; it must outlive this.
-    explicit SurfacePass(const PreparedScene& prepared);
+    // How the thresholds stand for a method (PreparedSurfaces).
+    static SurfaceSides sides_for(const SurfaceMethod& method);
+
+    // Of a scene that has_surfaces, as they are now, with the sides of the method; it must outlive this.
+    SurfacePass(const PreparedScene& prepared, const SurfaceMethod& method);
+
+    const SurfaceMethod& method() const { return method_; }
+    std::size_t table_bytes() const { return layers_.bytes() + first_.bytes(); }
 
     // What is defined and bound follows the scene's transfer function of the moment.
     struct Variant {
@@ -33,8 +40,12 @@ public:
 private:
     const SurfaceScene& scene() const { return prepared_.surfaces()->scene(); }
 
+    void upload_tables();
+
     const PreparedScene& prepared_;
+    SurfaceMethod method_;
     Texture list_, lights_;
+    Texture layers_, first_;  // over (s_f, s_b), of methods that take a table
 };
 
 }  // namespace cellproj::gl

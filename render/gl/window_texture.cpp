@@ -31,7 +31,12 @@ std::vector<float> texels(const DepthWindow& window, const NearnessFrame& frame)
 }  // namespace
 
 void WindowTexture::require_drawn(const Scene& scene, const Quality& quality) {
-    if (!DepthWindow::is_needed(scene) || !light_at_vertices(quality.method)) return;
+    if (!DepthWindow::is_needed(scene)) return;
+    // A table knows all surfaces between two scalars, not those before a cut.
+    if (has_surfaces(scene) && quality.surfaces.kind != SurfaceMethodKind::exact)
+        throw Error({ErrorKind::option, "--iso-method", "exact, for a scene that is clipped or has bodies", to_string(quality.surfaces),
+                     "use exact, or draw without cuts and bodies"});
+    if (!light_at_vertices(quality.method)) return;
     throw Error({ErrorKind::option, "--method", "one of light per pixel for a scene that is clipped or has bodies", to_string(quality.method),
                  "use integral, exact or a table"});
 }

@@ -1,7 +1,10 @@
 #version 450 core
 // SPDX-License-Identifier: BSD-3-Clause
 // One ray segment inside a cell, cut where isosurfaces cross it (RKE00 sections 5 to 10): the medium before a crossing, then the surface.
-// No table: the surfaces are found in their sorted list, so that the work grows with those crossed.
+// The surfaces are found in their sorted list, so that the work grows with those crossed; or by
+//   TABLE     one lookup over the scalars of the ends (RKE00 figures 6, 9 and 13): all as if they stood at the first one, where the medium is
+//             cut (figure 15), or
+//   COMBINED  part of them before and part behind the whole medium (RKE00 section 10)
 //   MEDIUM    there is one (TWO_FIELDS: whose extinction is told by another field); the method's file, behind this one, says what light it gives
 //   LIT       surfaces are shaded by the gradient, one for the cell or
 //   SMOOTH    linear in it
@@ -30,6 +33,12 @@ layout(binding = 8) uniform samplerBuffer surfaces;  // three each: threshold, i
 #ifdef WINDOW
 layout(binding = 10) uniform samplerBuffer windows;  // of the pixels: what is kept of their rays, nearest and farthest nearness
 uniform float window_width;                          // pixels in a row
+#endif
+
+#ifdef TABLE
+layout(binding = 11) uniform sampler2D layer_table;  // texels (s_front, s_back): all surfaces between, unlit; associated colour, opacity
+layout(binding = 12) uniform sampler2D first_table;  // likewise, x: the isovalue of the first one
+uniform float table_scale, table_shift;              // from scalars to texels (render/prepared_surfaces.hpp: SurfaceSides)
 #endif
 
 layout(location = 0) out vec4 light;  // associated colour, opacity
@@ -103,6 +112,16 @@ vec3 place_at(vec2 offset, float depth) {
 #endif
 }
 
+#ifdef NEAREST
+void set_depth(float depth) {  // from the farthest point's on
+#ifdef PERSPECTIVE
+    gl_FragDepth = -depth * inverse_far / (depth + 1.0 / inverse_far) * inverse_nearest;
+#else
+    gl_FragDepth = -depth * inverse_nearest;
+#endif
+}
+#endif
+
 void main() {
     float ridge = min(min(v_ridges.x, v_ridges.y), v_ridges.z);
     int other = ridge == v_ridges.x ? 1 : ridge == v_ridges.y ? 2 : 3;
@@ -155,6 +174,86 @@ void main() {
     s_opacity = clamp(s_opacity, 0.0, 1.0);
 #endif
 
+#ifdef LIT
+#ifdef PERSPECTIVE
+    vec3 to_eye = -(offset.x * axis_right.xyz + offset.y * axis_down.xyz + axis_forward.xyz) / ray;
+#else
+    vec3 to_eye = -axis_forward.xyz;
+#endif
+#endif
+
+#ifdef TABLE
+    precise vec2 place = vec2(front.y, back.y) * table_scale + table_shift;  // both cells of a face: the same
+    ivec2 texel = ivec2(floor(clamp(place, 0.0, table_scale)));
+    vec4 layers = texelFetch(layer_table, texel, 0);
+    float value = clamp(texelFetch(first_table, texel, 0).x, min(s.x, s.y), max(s.x, s.y));
+    float share = s.x != s.y ? clamp((value - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
+    vec2 s_kept = vec2(mix(s.x, s.y, kept.x), mix(s.x, s.y, kept.y));
+    bool crossed = layers.a > 0.0;
+#ifdef WINDOW
+    crossed = crossed && share >= kept.x && share <= kept.y;
+    if (!crossed) layers = vec4(0.0);
+#endif
+#ifdef NEAREST
+    if (!crossed) discard;
+#endif
+    // The part at the front of a layer of opacity a at share t has (1 - t)a; the part at the back makes the rest of it.
+    float t = clamp((share - kept.x) / max(kept.y - kept.x, 1e-30), 0.0, 1.0);
+    vec4 at_face = (1.0 - t) * layers, behind = layers * (t / max(1.0 - at_face.a, 1e-30));
+#if defined(SMOOTH) && defined(COMBINED)
+    at_face.rgb *= reflected(at_front.xyz, to_eye);
+    behind.rgb *= reflected(at_back.xyz, to_eye);
+#elif defined(LIT)
+#ifdef SMOOTH
+    vec3 share_of_color = reflected(mix(at_front.xyz, at_back.xyz, share), to_eye);
+#else
+    vec3 share_of_color = reflected(v_map.xyz, to_eye);
+#endif
+    layers.rgb *= share_of_color;
+    at_face.rgb *= share_of_color;
+    behind.rgb *= share_of_color;
+#endif
+#ifdef COMBINED
+    light = at_face;
+#ifdef MEDIUM
+#ifdef TWO_FIELDS
+    vec2 o_kept = vec2(mix(s_opacity.x, s_opacity.y, kept.x), mix(s_opacity.x, s_opacity.y, kept.y));
+    light += (1.0 - light.a) * light_of_segment(vec2(s_kept.x, o_kept.x), vec2(s_kept.y, o_kept.y), (kept.y - kept.x) * segment + lead);
+#else
+    light += (1.0 - light.a) * light_of_segment(s_kept.x, s_kept.y, (kept.y - kept.x) * segment + lead);
+#endif
+#endif
+    light += (1.0 - light.a) * behind;
+#else
+    light = vec4(0.0);
+#ifdef MEDIUM
+    // Once, or twice where there are surfaces: a loop, as code that is written twice is run twice.
+    float from = kept.x, to = crossed ? share : kept.y, s_at = s_kept.x, s_to = crossed ? value : s_kept.y;
+    for (bool before = true;;) {
+        float part = (to - from) * segment + lead;
+#ifdef TWO_FIELDS
+        light += (1.0 - light.a) * light_of_segment(vec2(s_at, mix(s_opacity.x, s_opacity.y, from)), vec2(s_to, mix(s_opacity.x, s_opacity.y, to)), part);
+#else
+        light += (1.0 - light.a) * light_of_segment(s_at, s_to, part);
+#endif
+        if (before) light += (1.0 - light.a) * layers;
+        if (!before || !crossed || light.a >= 1.0) break;
+        from = to;
+        to = kept.y;
+        s_at = s_to;
+        s_to = s_kept.y;
+        lead = 0.0;
+        before = false;
+    }
+#else
+    light = layers;
+#endif
+#endif
+#ifdef NEAREST
+    set_depth(front_depth + share * depth_difference);
+    light.a = 1.0;
+#endif
+#else
     int first = int(v_cell.x), last = int(v_cell.y);
     ivec2 both = ranks(vec2(front.y, back.y), first, last);
     int k = both.x, end = both.y;
@@ -163,15 +262,8 @@ void main() {
 #ifdef NEAREST
     if (k == end) discard;
 #endif
-#ifdef LIT
-#ifdef PERSPECTIVE
-    vec3 to_eye = -(offset.x * axis_right.xyz + offset.y * axis_down.xyz + axis_forward.xyz) / ray;
-#else
-    vec3 to_eye = -axis_forward.xyz;
-#endif
-#ifndef SMOOTH
+#if defined(LIT) && !defined(SMOOTH)
     vec3 share_of_color = reflected(v_map.xyz, to_eye);
-#endif
 #endif
     float at = kept.x, s_at = mix(s.x, s.y, kept.x);  // where the last crossing was, as a share of the segment, and the scalar there
     for (;;) {
@@ -211,12 +303,7 @@ void main() {
         color *= share_of_color;
 #endif
 #ifdef NEAREST
-        float depth = front_depth + share * depth_difference;
-#ifdef PERSPECTIVE
-        gl_FragDepth = -depth * inverse_far / (depth + 1.0 / inverse_far) * inverse_nearest;
-#else
-        gl_FragDepth = -depth * inverse_nearest;
-#endif
+        set_depth(front_depth + share * depth_difference);
         light = vec4(color, 1.0);
         break;
 #else
@@ -226,4 +313,5 @@ void main() {
         k += rising ? 1 : -1;
 #endif
     }
+#endif
 }
