@@ -224,7 +224,10 @@ std::string why_automatic(Backend backend, const Quality& quality, FieldsRead fi
     if (backend == Backend::cpu)
         return gpu.found ? "pixels that sort themselves are drawn by it alone" : "without a GPU it is the fastest (EGL: " + gpu.what + ")";
     if (fields == FieldsRead::two) return "opacity from another field is drawn by OpenGL only, and there is no GPU (EGL: " + gpu.what + ")";
-    return (light_at_vertices(quality.method) ? "light at vertices" : "target " + to_string(quality.target)) +
+    const std::string what = light_at_vertices(quality.method)                        ? "light at vertices"
+                             : quality.surfaces.kind != SurfaceMethodKind::exact ? "isosurfaces by " + to_string(quality.surfaces)
+                                                                                      : "target " + to_string(quality.target);
+    return what +
            std::string(" is drawn by OpenGL only, and there is no GPU (EGL: ") + gpu.what + ")";
 }
 

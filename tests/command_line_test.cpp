@@ -98,7 +98,7 @@ TEST_F(CommandLine, TheBackendIsChosenAndTold) {
         std::ifstream stream(path("stats.json"));
         return nlohmann::json::parse(stream).at("pictures").at(0).at("backend").get<std::string>();
     };
-    const bool gpu = find_gpu().found;
+    const bool gpu = cellproj::find_gpu().found;
     EXPECT_EQ(backend_of(""), gpu ? "gl_egl" : "cpu");
     EXPECT_EQ(backend_of("--backend cpu --threads 1 --order pixel"), "cpu");
     EXPECT_EQ(backend_of("--backend osmesa"), "gl_osmesa");
