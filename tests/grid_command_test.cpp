@@ -28,7 +28,7 @@ protected:
 
     static constexpr const char* voxels = "v.raw --dims 4 5 6 --type uint8";
 
-    Outcome run(const std::string& options) const { return run_program(folder_, "render --size 120x110 -o p.png " + options); }
+    Outcome run(const std::string& options) const { return run_program(folder_, "render --size 240x200 -o p.png " + options); }
 
     std::string drawn_as(const std::string& options) const {
         const Outcome outcome = run(options + " --stats s.json");
