@@ -20,6 +20,8 @@ namespace {
 constexpr std::size_t brick_side = 4;     // cells, and bricks of the level below
 constexpr std::size_t function_bins = 1024;  // of the scalars, in which the transfer function shows something or not
 
+constexpr std::size_t longest_axis = std::size_t{1} << 24;  // the kernels count cells in float32
+
 // A ray that moves less than this across the whole grid [axis units] crosses no plane: about what float32 places are worth.
 constexpr double no_movement = 1e-6;
 
@@ -60,6 +62,11 @@ GridVolume::GridVolume(const Grid& grid) : units_(units_of(grid)), constant_(gri
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (n.ni * n.nj * n.nk > most) {
         throw Error({ErrorKind::data, "grid", "at most " + std::to_string(most) + " points", std::to_string(n.ni * n.nj * n.nk),
+                     "resample it, or cut a part out"});
+    }
+    for (const GridAxis& axis : grid.axes) {
+        if (axis.cells() < longest_axis) continue;
+        throw Error({ErrorKind::data, "grid", "fewer than " + std::to_string(longest_axis) + " cells along an axis", std::to_string(axis.cells()),
                      "resample it, or cut a part out"});
     }
     values_.resize(grid.values.size());
