@@ -4,6 +4,7 @@
 // repeat their points (STL always does); `tetrahedralize` (mesher.hpp) sorts that out.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -48,6 +49,10 @@ std::uint32_t facet_of(const Surface& surface, std::size_t polygon);
 // finite, a polygon of fewer than 3 vertices, a vertex id out of range, a field or a list of facets whose length does not
 // fit, holes or regions without Inside::enclosed.
 void validate(const Surface& surface);
+
+// Its polygons as triangles, turned as they are, in their order (face_triangles.hpp): #triangles by 3, 0-based into points. Of a valid
+// surface.
+std::vector<std::array<VertexId, 3>> triangles_of(const Surface& surface);
 
 // Reads STL (ascii, binary), OFF, PLY, OBJ, VTK XML polygonal data (.vtp) and TetGen's .poly and .smesh; the format is told
 // by the content, that of OBJ and TetGen, which have no mark, by the suffix. Polygons keep the order of the file; VTP and

@@ -13,13 +13,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "mesh/face_triangles.hpp"
 #include "mesh/surface.hpp"
 
 namespace cellproj {
 
 namespace {
-
-using Triangle = std::array<VertexId, 3>;
 
 // Where on the surface, and how far away.
 struct Closest {
@@ -171,6 +170,12 @@ Field interpolated(const Field& field, const std::vector<Closest>& places) {
 }
 
 }  // namespace
+
+std::vector<std::array<VertexId, 3>> triangles_of(const Surface& surface) {
+    std::vector<std::array<VertexId, 3>> triangles;
+    for (const auto& polygon : surface.polygons) triangulate_face(polygon, surface.points, triangles);
+    return triangles;
+}
 
 void carry_fields(const Surface& surface, TetMesh& mesh) {
     const TriangleTree tree(surface.points, fans(surface));

@@ -70,9 +70,9 @@ void set_plane(float* floats, const ScreenPlane& plane) {
     floats[2] = static_cast<float>(plane.gradient.y);
 }
 
-void set_triangle_terms(const Silhouette& silhouette, std::size_t triangle, StreamVertex& vertex) {
+void set_triangle_terms(const Silhouette& silhouette, std::size_t triangle, const NearnessFrame& frame, StreamVertex& vertex) {
     const SilhouetteTerms& terms = silhouette.terms[triangle];
-    set_plane(vertex.base_depth, terms.base_depth);
+    set_plane(vertex.base_depth, {terms.base_depth.value - frame.far, terms.base_depth.gradient});
     set_plane(vertex.base_scalar, terms.base_scalar);
     for (std::size_t ridge = 0; ridge < 3; ++ridge) set_plane(vertex.thickness[ridge], terms.thickness[ridge]);
     vertex.origin_x = static_cast<float>(silhouette.origin.x);
@@ -181,6 +181,10 @@ NearnessFrame CellStream::nearness_frame() const {
         return {true, far, std::max(plane - far, 1e-30)};
     }
     return {false, far, std::max(far - near, 1e-30)};
+}
+
+NearnessFrame CellStream::segment_frame() const {
+    return {transform_.perspective(), transform_.perspective() ? 0.0 : points_.front().depth, 1.0};
 }
 
 CellStream::ScreenPoint CellStream::on_screen(const glm::dvec3& p) const {
@@ -293,7 +297,7 @@ public:
     const Silhouette& silhouette() const { return silhouette_; }
 
     void begin_triangle(std::size_t triangle) {
-        set_triangle_terms(silhouette_, triangle, vertex_);
+        set_triangle_terms(silhouette_, triangle, stream_.segment_frame(), vertex_);
         if constexpr (has_opacity) set_plane(vertex_.base_opacity, opacity_silhouette_.terms[triangle].base_scalar);
     }
 

@@ -25,7 +25,7 @@ namespace cellproj {
 struct StreamVertex {
     float x, y;
     float ridges[3];
-    float base_depth[3], origin_x;
+    float base_depth[3], origin_x;  // as CellStream::segment_frame
     float base_scalar[3], origin_y;  // pixels; a pixel centre
     float thickness[3][3];
     float scalar_slope;
@@ -86,6 +86,9 @@ public:
 
     // From all points before the near plane.
     NearnessFrame nearness_frame() const;
+    // What depths of fragments of the medium are relative to, in parallel views a point's, so that far eyes cost no digits; `nearest` is not
+    // told.
+    NearnessFrame segment_frame() const;
     const ScreenTransform& transform() const { return transform_; }
     // Perspective: depth of the near plane [SceneUnits::length], a thousandth of the distance to what the camera looks at or of
     // the mesh. Cells are cut there, and what a ray meets before it is drawn as if it were the cell at the plane. A nearer plane would cost

@@ -103,7 +103,10 @@ Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene
 
 std::vector<SurfaceHit> Reference::surfaces_along(const ViewRay& ray) const {
     if (!scene_.surfaces) return {};
-    return surface_hits(scene_.surfaces->isosurfaces, ray_segments(scene_, index_->cells_along(ray)), rounding_);
+    const RayWindow window = ray_window(scene_, index_->middle(), ray);
+    auto hits = surface_hits(scene_.surfaces->isosurfaces, ray_segments(scene_, index_->cells_along(ray)), rounding_);
+    std::erase_if(hits, [&](const SurfaceHit& hit) { return hit.t < window.begin || hit.t > window.end; });
+    return hits;
 }
 
 glm::dvec3 Reference::gradient_at(const SurfaceHit& hit) const {
@@ -125,7 +128,13 @@ Light Reference::reflected(const SurfaceHit& hit, const ViewRay& ray) const {
     return layer(shade(surfaces.lighting, color, -gradient_at(hit), -ray.direction), surface.opacity);
 }
 
+Light Reference::reflected(const BodyHit& hit, const ViewRay& ray) const {
+    return layer(shade(scene_.bodies->lighting, hit.body->color, hit.normal, -ray.direction), 1.0);
+}
+
 Light Reference::light(const ViewRay& ray) const {
+    const RayWindow window = ray_window(scene_, index_->middle(), ray);
+    const double window_end = window.end_of_field();
     const std::vector<RaySegment> along = ray_segments(scene_, index_->cells_along(ray));
     const std::vector<SurfaceHit> hits =
         scene_.surfaces ? surface_hits(scene_.surfaces->isosurfaces, along, rounding_) : std::vector<SurfaceHit>{};
@@ -136,7 +145,10 @@ Light Reference::light(const ViewRay& ray) const {
     for (const SurfaceHit& hit : hits)
         bounds.push_back(hit.t);
     std::sort(bounds.begin(), bounds.end());
+    for (const double cut : {window.begin, window_end})
+        if (!bounds.empty() && bounds.front() < cut && cut < bounds.back()) bounds.insert(std::ranges::upper_bound(bounds, cut), cut);
     bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
+    std::erase_if(bounds, [&](double t) { return t < window.begin || t > window_end; });
 
     // Between two neighbouring bounds the same segments are there, and no surface.
     RayLight light(*scene_.transfer);
@@ -147,12 +159,12 @@ Light Reference::light(const ViewRay& ray) const {
     for (std::size_t i = 0; i < bounds.size() && !light.opaque(); ++i) {
         const double begin = bounds[i];
         for (; hit != hits.end() && hit->t <= begin; ++hit)
-            light.add(reflected(*hit, ray));
+            if (hit->t >= window.begin) light.add(reflected(*hit, ray));
         if (i + 1 == bounds.size()) break;
         const double end = bounds[i + 1];
-        std::erase_if(here, [&](const RaySegment& segment) { return segment.leave <= begin; });
         while (next != along.end() && next->enter <= begin)
             here.push_back(*next++);
+        std::erase_if(here, [&](const RaySegment& segment) { return segment.leave <= begin; });
         media.clear();
         opacity.clear();
         for (const RaySegment& segment : here) {
@@ -161,6 +173,7 @@ Light Reference::light(const ViewRay& ray) const {
         }
         light.add(media, opacity, end - begin);
     }
+    if (window.body) light.add(reflected(*window.body, ray));
     return light.light();
 }
 

@@ -11,6 +11,8 @@
 //   cell after the other gets the same opacity, but the colour of the one it draws last is in front.
 // - Isosurfaces lie where the linear scalar of a cell passes their value (ray_surfaces.hpp): the medium is integrated up to
 //   them, then they are composited, unlit or lit by the cell's or the points' gradients.
+// - Of mesh and isosurfaces counts what the clip region keeps (ray_window.hpp): rays are cut at its planes. Bodies are opaque, lit by the
+//   normals of their triangles, and stay whole.
 // - Perspective rays begin at the eye, parallel ones at infinity. (The renderers cut at their near plane, a thousandth of the
 //   distance to the camera's center.)
 // - A ray along a face, an edge or through a vertex is decided as one beside it, the same for all cells (ray_index.hpp).
@@ -31,6 +33,7 @@
 #include "render/image.hpp"
 #include "render/ray_index.hpp"
 #include "render/ray_surfaces.hpp"
+#include "render/ray_window.hpp"
 #include "render/scene.hpp"
 
 namespace cellproj {
@@ -65,7 +68,7 @@ public:
     // The light along one ray.
     Light light(const ViewRay& ray) const;
 
-    // The isosurfaces that it meets, all of them, also behind opaque ones; and the gradient there that their shading takes
+    // The isosurfaces that it meets in the clip region, also behind opaque ones and bodies; and the gradient there that their shading takes
     // [scalar / mesh unit]: 0 where there is none, or unlit.
     std::vector<SurfaceHit> surfaces_along(const ViewRay& ray) const;
     glm::dvec3 gradient_at(const SurfaceHit& hit) const;
@@ -88,6 +91,7 @@ public:
 
 private:
     Light reflected(const SurfaceHit& hit, const ViewRay& ray) const;
+    Light reflected(const BodyHit& hit, const ViewRay& ray) const;
 
     Scene scene_;
     std::shared_ptr<const RayIndex> index_;

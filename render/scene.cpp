@@ -32,6 +32,8 @@ void validate(const Scene& scene) {
     const ScalarField& field = *scene.field;
     validate(*scene.mesh, field);
     if (scene.opacity_field) validate(*scene.mesh, *scene.opacity_field);
+    if (scene.clip) validate(*scene.clip, "clip region");
+    if (scene.bodies) validate(*scene.bodies);
     if (!has_surfaces(scene)) return;
     if (field.location == FieldLocation::cells) {
         throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",

@@ -9,6 +9,8 @@
 #include "classify/transfer_function.hpp"
 #include "mesh/scalar_field.hpp"
 #include "mesh/tet_mesh.hpp"
+#include "render/body_scene.hpp"
+#include "render/clip_region.hpp"
 #include "render/surface_scene.hpp"
 
 namespace cellproj {
@@ -24,6 +26,8 @@ struct Scene {
     // density model, which lifts the restriction of RKE00 Eq. 1 that κ and ρ come from one scalar. Cells where either field is not
     // finite are left out. Isosurfaces are those of `field`.
     std::shared_ptr<const ScalarField> opacity_field = nullptr;
+    std::shared_ptr<const ClipRegion> clip = nullptr;    // what of mesh and isosurfaces is drawn; null: all
+    std::shared_ptr<const BodyScene> bodies = nullptr;   // opaque, not clipped; null: none
 };
 
 // What colour and extinction are functions of.
@@ -31,7 +35,8 @@ enum class FieldsRead { one, two };
 inline FieldsRead fields_read(const Scene& scene) { return scene.opacity_field ? FieldsRead::two : FieldsRead::one; }
 
 // Throws Error (data) when a field does not fit the mesh or has no finite value, Error (option) for isosurfaces of a field on
-// cells, which has none, and for lights out of range.
+// cells, which has none, for lights out of range and for clip regions
+// and bodies as their own `validate`.
 void validate(const Scene& scene);
 
 bool has_surfaces(const Scene& scene);

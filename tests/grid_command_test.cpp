@@ -71,7 +71,8 @@ TEST_F(GridCommand, AGridIsDrawnAsItIs) {
 }
 
 TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
-    for (const char* option : {"--iso 20", "--order mpvo", "--cell-values averaged", "--verify-order", "--max-error 0.1"}) {
+    for (const char* option : {"--iso 20", "--order mpvo", "--cell-values averaged", "--verify-order", "--max-error 0.1", "--clip 1,1,1:0,0,1",
+                               "--clip-box 0,0,0,2,2,2"}) {
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "tetrahedra") << option;
         std::filesystem::remove(folder_ / "p.png");
         expect_refused(std::string(voxels) + " --as grid " + option, {"regular grid", "--as tets"});

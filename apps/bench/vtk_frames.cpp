@@ -119,9 +119,8 @@ public:
         window_->AddRenderer(renderer_);
     }
 
-    Statistics draw(const Camera& camera) override {
+    void draw(const Camera& camera) override {
         bench::draw(*window_, *renderer_, camera);
-        return {};
     }
 
     Image picture() const override { return picture_of(*window_, size_); }

@@ -4,10 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cstdio>
-#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -18,40 +15,8 @@ namespace cellproj::cli {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, glm::dvec3>, 12> names{{{"white", {1, 1, 1}},
-                                                                         {"gray", {0.5, 0.5, 0.5}},
-                                                                         {"black", {0, 0, 0}},
-                                                                         {"red", {0.85, 0.1, 0.1}},
-                                                                         {"orange", {1, 0.55, 0}},
-                                                                         {"yellow", {0.95, 0.85, 0.1}},
-                                                                         {"green", {0.1, 0.6, 0.2}},
-                                                                         {"cyan", {0, 0.75, 0.75}},
-                                                                         {"blue", {0.1, 0.3, 0.85}},
-                                                                         {"purple", {0.5, 0.2, 0.7}},
-                                                                         {"pink", {1, 0.55, 0.7}},
-                                                                         {"brown", {0.55, 0.35, 0.2}}}};
-constexpr const char* color_forms = "white, gray, black, red, orange, yellow, green, cyan, blue, purple, pink, brown, #RRGGBB, or R,G,B in 0..1";
-
 [[noreturn]] void refuse(const std::string& expected, std::string_view found, const std::string& advice) {
     throw Error({ErrorKind::option, "--iso", expected, "\"" + std::string(found) + "\"", advice});
-}
-
-// #RRGGBB
-std::optional<glm::dvec3> to_hex_color(std::string_view text) {
-    unsigned bits = 0;
-    const auto [rest, error] = std::from_chars(text.data() + 1, text.data() + text.size(), bits, 16);
-    if (text.size() != 7 || error != std::errc() || rest != text.data() + text.size()) return std::nullopt;
-    return glm::dvec3(bits >> 16, bits >> 8 & 255U, bits & 255U) / 255.0;
-}
-
-std::optional<glm::dvec3> to_color(std::string_view text) {
-    if (text.starts_with('#')) return to_hex_color(text);
-    const auto* name = std::ranges::find(names, text, [](const auto& entry) { return entry.first; });
-    if (name != names.end()) return name->second;
-    const auto numbers = to_point(text);
-    if (!numbers || std::min({numbers->x, numbers->y, numbers->z}) < 0 || std::max({numbers->x, numbers->y, numbers->z}) > 1)
-        return std::nullopt;
-    return numbers;
 }
 
 // Emission of an emitter is per length: only its hue is a colour. What is black there says nothing about a surface.
@@ -90,8 +55,8 @@ void add_iso_options(CLI::App& command, IsoOptions& options) {
     command.add_option("--shading", options.shading,
                        "Isosurfaces: smooth (by the gradients of the points), flat (of the cells), or unlit: their colour as it is")
         ->check(CLI::IsMember({"flat", "smooth", "unlit"}))->capture_default_str()->needs(iso);
-    command.add_option("--light", options.light, "Isosurfaces: towards a distant light, X,Y,Z; default: a headlight")
-        ->expected(3)->delimiter(',')->needs(iso);
+    command.add_option("--light", options.light, "Isosurfaces and bodies: towards a distant light, X,Y,Z; default: a headlight")
+        ->expected(3)->delimiter(',');
 }
 
 SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& colors) {
@@ -101,9 +66,15 @@ SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& c
                        .shading = options.shading == "flat"    ? Shading::flat
                                   : options.shading == "unlit" ? Shading::unlit
                                                                : Shading::smooth};
-    if (!options.light.empty()) scene.lighting.lights = {{.towards = glm::dvec3(options.light[0], options.light[1], options.light[2])}};
-    validate(scene.lighting, "--light");
+    scene.lighting = parse_lighting(options);
     return scene;
+}
+
+Lighting parse_lighting(const IsoOptions& options) {
+    Lighting lighting;
+    if (!options.light.empty()) lighting.lights = {{.towards = glm::dvec3(options.light[0], options.light[1], options.light[2])}};
+    validate(lighting, "--light");
+    return lighting;
 }
 
 void warn_of_missing(const IsoSurfaces& surfaces, const ScalarField& field) {

@@ -20,7 +20,7 @@ namespace cellproj::cli {
 struct IsoOptions {
     std::vector<std::string> surfaces;  // --iso, each VALUE[,VALUE…][:COLOR[:OPACITY]]
     std::string shading = "smooth";
-    std::vector<double> light;  // X,Y,Z towards it; empty: a headlight
+    std::vector<double> light;  // X,Y,Z towards it; empty: a headlight; of bodies as well
     bool volume = false;        // the medium around them is drawn, too
 
     bool any() const { return !surfaces.empty(); }
@@ -32,6 +32,9 @@ void add_iso_options(CLI::App& command, IsoOptions& options);
 // Surfaces without a colour of their own take that of `colors` at their value. Throws Error (option) that names the option and
 // what was found.
 SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& colors);
+
+// Of surfaces: --light, or a headlight. Throws Error (option) for a direction without length.
+Lighting parse_lighting(const IsoOptions& options);
 
 // Tells of isovalues that the field does not reach.
 void warn_of_missing(const IsoSurfaces& surfaces, const ScalarField& field);

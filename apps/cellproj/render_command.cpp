@@ -233,6 +233,7 @@ void render_pictures(const RenderOptions& options) {
         for (const std::string& surface : options.scene.iso.surfaces)
             text["cellproj isosurfaces"] += "--iso " + surface + " ";
         if (options.scene.iso.any()) text["cellproj isosurfaces"] += "--shading " + options.scene.iso.shading;
+        if (const std::string cuts = text_of(options.scene.cuts); !cuts.empty()) text["cellproj cuts"] = cuts;
         if (!annotator.note().empty()) text["cellproj note"] = annotator.note();
         warn(image, statistics, file);
         write(annotator.compose(std::move(image), cameras[i]), file, options, text);
@@ -254,6 +255,7 @@ void add_render_command(CLI::App& app) {
     add_scene_options(*command, options->scene);
     add_grid_options(*command, options->scene);
     add_iso_options(*command, options->scene.iso);
+    add_cut_options(*command, options->scene.cuts);
     command->add_option("-o,--output", options->output, "The picture: .png or .exr; several become NAME_000.png …")
         ->required();
     add_annotation_options(*command, options->annotations);

@@ -154,6 +154,10 @@ SceneOptions::SceneOptions() : colors(preset_names().front()) {}
 ImageSize require_possible(const SceneOptions& options) {
     check_colors(options);
     parse_surfaces(options.iso, TransferFunction(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}}));
+    parse_region(options.cuts);
+    for (const std::string& surface : options.cuts.surfaces) parse_body(surface);
+    if (!options.iso.light.empty() && !options.iso.any() && options.cuts.surfaces.empty())
+        throw Error({ErrorKind::option, "--light", "isosurfaces or bodies to be lit", "none", "give --iso or --surface"});
     return parse_size(options.size);
 }
 
@@ -173,6 +177,7 @@ LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as) {
                 .transfer = choose_transfer(options, input, regular.get(), *field, opacity.get()),
                 .opacity_field = opacity};
     if (options.iso.any()) add_surfaces(options, scene);
+    add_cuts(options.cuts, parse_lighting(options.iso), scene);
     std::optional<GridScene> grid;
     if (regular) grid = GridScene{std::move(regular), scene.transfer, scene.surfaces};
     return {std::move(input), std::move(scene), std::move(grid)};

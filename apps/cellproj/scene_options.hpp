@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cut_options.hpp"
 #include "input.hpp"
 #include "iso_options.hpp"
 #include "project/camera.hpp"
@@ -38,6 +39,7 @@ struct SceneOptions {
     double opacity_scale = 1;
     bool colors_chosen = false;  // by any of --colors, --range, --axis
     IsoOptions iso;
+    CutOptions cuts;
     bool opacity_chosen = false;  // by --transfer, --opacity-scale or --opacity-field: the medium is asked for
 
     FieldsRead fields() const { return opacity_field.empty() ? FieldsRead::one : FieldsRead::two; }

@@ -36,6 +36,7 @@ struct alignas(64) CellPlanes {
     Row first_scalar, scalar, scalar_x, scalar_y, scalar_n;
     Row lowest, highest;       // scalar
     Row base;                  // nearness of the first corner, to which the above are relative; perspective: its 1/depth
+    Row anchor;                // the same nearness as that of ScreenPoint
     std::int32_t left[columns], top[columns], width[columns], height[columns];  // pixels of the tile; width ≤ 0: none
     std::int32_t first_pixel[columns];                                            // left + tile_side·top
 };
@@ -131,6 +132,7 @@ HWY_NOINLINE void make_planes(D d, const ScreenCells& cells, const std::uint32_t
     const V first_x = hn::Add(x0, left), first_y = hn::Add(y0, top);
     hn::Store(hn::Sub(highest_of(p[0].n, p[1].n, p[2].n, p[3].n), p[0].n), d, planes.nearest);
     hn::Store(hn::Sub(lowest_of(p[0].n, p[1].n, p[2].n, p[3].n), p[0].n), d, planes.farthest);
+    hn::Store(p[0].n, d, planes.anchor);
     hn::Store(hn::Add(p[0].n, hn::Set(d, cells.view.base_nearness)), d, planes.base);
 
     // The faces: the one opposite to corner k, its corners in the order of their numbers.

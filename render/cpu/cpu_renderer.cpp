@@ -20,6 +20,7 @@
 #include "render/cpu/kernels.hpp"
 #include "render/cpu/screen_mesh.hpp"
 #include "render/cpu/tile_bins.hpp"
+#include "render/depth_window.hpp"
 #include "render/prepared_scene.hpp"
 
 namespace cellproj::cpu {
@@ -47,6 +48,7 @@ private:
     void prepare_here(const Scene& scene, const Quality& quality);
     Image render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out);
     enum class Drawing { by_cells, by_pixels, nearest_surfaces };
+    void set_windows(const DepthWindow& window);
     void draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics);
     bool may_be_opaque() const;
 
@@ -59,6 +61,7 @@ private:
     TileBins bins_;
     std::vector<std::uint8_t> extra_drawn_;
     std::vector<PixelTrail> trails_;  // with isosurfaces, of the picture's pixels
+    std::vector<NearnessInterval> windows_;  // of the picture's pixels, where something is cut
     oneapi::tbb::enumerable_thread_specific<PendingFragments> pending_;
 };
 
@@ -119,6 +122,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     const Drawing drawing = prepared_->only_opaque_surfaces() ? Drawing::nearest_surfaces
                             : quality.order_per_pixel         ? Drawing::by_pixels
                                                               : Drawing::by_cells;
+    std::optional<DepthWindow> window;
     oneapi::tbb::parallel_invoke(
         [&] {
             // Pixels that sort their own fragments want cells nearly sorted, no more.
@@ -128,6 +132,9 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
         [&] {
             mesh_.set_view(camera, size);
             bins_.find_cells(mesh_.cells(), first);
+        },
+        [&] {
+            if (DepthWindow::is_needed(scene)) window.emplace(scene, camera, size, prepared_->units().length);
         });
     statistics.ms.sort = sort.ms();
 
@@ -137,6 +144,8 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
     if (prepared_->surfaces()) trails_.assign(image.pixels.size(), {});
+    windows_.clear();
+    if (window) set_windows(*window);
     statistics.ms.project = projecting.ms();
 
     for (int y = 0; y < size.height; y += first.height)
@@ -146,6 +155,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
             draw(image, region, drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }
+    if (window) window->add_bodies(image);
     statistics.ms.total = total.ms();
 
     std::vector<CellId> parts;
@@ -183,6 +193,11 @@ bool CpuRenderer::may_be_opaque() const {
     return transmitted < 0.5;
 }
 
+void CpuRenderer::set_windows(const DepthWindow& window) {
+    for (const DepthInterval& pixel : window.pixels())
+        windows_.push_back(pixel.empty() ? NearnessInterval::nothing() : NearnessInterval{mesh_.nearness(pixel.near), mesh_.nearness(pixel.far)});
+}
+
 // Slab by slab from the front, each tile by one task: the same order of operations for any number of threads.
 void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Statistics& statistics) {
     const int columns = (region.width + tile_side - 1) / tile_side, rows = (region.height + tile_side - 1) / tile_side;
@@ -206,6 +221,8 @@ void CpuRenderer::draw(Image& image, const Region& region, Drawing drawing, Stat
                           static_cast<std::size_t>(image.width), &bins_.full(column, row)};
                 if (prepared_->surfaces())
                     tile.trails = &trails_[static_cast<std::size_t>(y) * tile.stride + static_cast<std::size_t>(x)];
+                if (!windows_.empty())
+                    tile.windows = &windows_[static_cast<std::size_t>(y) * tile.stride + static_cast<std::size_t>(x)];
                 switch (drawing) {
                     case Drawing::by_cells:
                         fragments += draw_tile(mesh_.cells(), shading, tile, items);

@@ -24,6 +24,7 @@
 #include "render/cpu/segment_light-inl.hpp"
 #include "render/cpu/table_light-inl.hpp"
 #include "render/cpu/cell_planes-inl.hpp"
+#include "render/cpu/window_drawing-inl.hpp"
 #include "render/cpu/tile_drawing-inl.hpp"
 #include "render/cpu/surface_light-inl.hpp"
 #include "render/cpu/surface_drawing-inl.hpp"
@@ -72,6 +73,21 @@ void FindBoxes(const ScreenCells& cells, const Region& region, std::size_t first
     for (std::size_t item = first; item < end; ++item) boxes[item] = finder.of(static_cast<std::uint32_t>(item));
 }
 
+// Where nothing of a ray is kept, nothing is drawn.
+template <class Draw>
+HWY_NOINLINE std::size_t draw_in_window(const View& view, const Tile& target, TileState& tile, const Draw& draw_as) {
+    WindowTile window(view, target.windows, target.stride, target.width, target.height);
+    if (!(window.nearest > window.farthest)) return 0;
+    for (int y = 0; y < target.height; ++y)
+        for (int x = 0; x < target.width; ++x)
+            if (!(window.near[tile_side * y + x] > window.far[tile_side * y + x])) {
+                tile.open[y] &= ~(1U << x);
+                tile.some_closed = true;
+            }
+    tile.window = &window;
+    return draw_as(tile);
+}
+
 // Loads a tile's pixels, draws, and stores them.
 template <class Draw>
 HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Shading& shading, const Tile& target, const Draw& draw_as) {
@@ -84,7 +100,7 @@ HWY_INLINE std::size_t on_tile(const ScreenCells& cells, const Shading& shading,
         std::memcpy(tile.rgba[tile_side * y], target.pixels + static_cast<std::size_t>(y) * target.stride, row_bytes);
         tile.open[y] = target.width == 32 ? ~0U : (1U << target.width) - 1U;
     }
-    const std::size_t fragments = draw_as(tile);
+    const std::size_t fragments = target.windows ? draw_in_window(view, target, tile, draw_as) : draw_as(tile);
     if (target.full && !close_pixels(tile, shading.opaque, target.width, target.height)) *target.full = 1;
     for (int y = 0; y < target.height; ++y)
         std::memcpy(target.pixels + static_cast<std::size_t>(y) * target.stride, tile.rgba[tile_side * y], row_bytes);

@@ -46,6 +46,14 @@ struct View {
     float unit_per_pixel = 0;     // perspective: on the plane at depth 1
 };
 
+// What of a pixel's ray is drawn, of the nearness of ScreenPoint: near ≥ n ≥ far.
+struct NearnessInterval {
+    static constexpr float unbounded = 1e30F;
+    float near = unbounded, far = -unbounded;
+
+    static constexpr NearnessInterval nothing() { return {-unbounded, unbounded}; }
+};
+
 // What is drawn. An item below #T is a cell, item #T + i is extra[i]: parts of cells that were cut, with points of their own.
 struct ScreenCells {
     View view;
@@ -96,6 +104,7 @@ struct Tile {
     std::size_t stride;       // pixels from row to row
     std::uint8_t* full = nullptr;  // set to 1 when nothing more can be seen behind what the tile holds
     PixelTrail* trails = nullptr;  // with isosurfaces: of the pixels, from one drawing of the tile to the next; `stride` as theirs
+    const NearnessInterval* windows = nullptr;  // of the pixels, `stride` as theirs; null: all of every ray
 };
 
 // Composites items, given from back to front, behind what the tile holds already, until nothing can be seen any more. Returns the

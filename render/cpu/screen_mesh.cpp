@@ -146,6 +146,11 @@ glm::dvec3 ScreenMesh::precisely_on_screen(const glm::dvec3& p) const {
     return {bounded(screen.x), bounded(screen.y), transform_.perspective() ? 1.0 / p.z : base_ - p.z};
 }
 
+float ScreenMesh::nearness(double depth) const {
+    constexpr double unbounded = NearnessInterval::unbounded;
+    return static_cast<float>(std::clamp(transform_.perspective() ? 1.0 / depth - base_ : base_ - depth, -unbounded, unbounded));
+}
+
 ScreenPoint ScreenMesh::rounded(const glm::dvec3& place, float scalar) const {
     const double nearness = transform_.perspective() ? place.z - base_ : place.z;
     return {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(nearness), scalar};

@@ -42,6 +42,10 @@ public:
     // and no longer than `order` does. set_view came before.
     std::span<const std::uint32_t> cut(const ViewOrder& order);
 
+    // Of a depth along the viewing axis [SceneUnits::length], as of ScreenPoint; of infinite ones and the eye's own unbounded. set_view came
+    // before.
+    float nearness(double depth) const;
+
     // For the last order that was cut.
     const ScreenCells& cells() const { return cells_; }
     // The cells that the extra tetrahedra are parts of.

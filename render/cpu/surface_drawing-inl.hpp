@@ -317,17 +317,25 @@ HWY_NOINLINE void composite_with_surfaces(D d, const ScreenCells& cells, const S
         const SurfaceEnds& ends = s.ends[i];
         const std::int32_t pixel = f.pixel[i];
         PixelTrail& trail = s.trails[pixel];
-        if (trail.level >= 0 && trail.level != ends.level_front && follows<perspective>(trail.nearness, ends.near_front))
+        if (trail.level >= 0 && trail.level != ends.level_front && follows<perspective>(trail.nearness, ends.near_front) &&
+            (!tile.window || is_kept(cells.view, *tile.window, pixel, ends.near_front)))
             add_jump(d, cells, shading, tile, pixel, ends, trail);
         if (trail.level == PixelTrail::closed) continue;
         trail = {ends.level_back, ends.near_back, ends.item};
         // What begins at the near plane has the way from the eye as well, which belongs to the first piece.
         float before = perspective && ends.near_front > cells.view.near_plane ? 1.0F / ends.near_front : 0.0F;
         const float way = HWY_MAX(f.length[i] - before, 0.0F);
-        float front = f.front[i], share = 0.0F;
+        FragmentCut cut{.before = before};
+        if (tile.window) cut = cut_fragment<perspective>(cells.view, *tile.window, pixel, ends.near_front, ends.near_back, before);
+        if (!cut.any) continue;
+        before = cut.before;
+        const auto scalar_at = [&](float of_way) HWY_ATTR { return f.front[i] + of_way * (f.back[i] - f.front[i]); };
+        float front = cut.from > 0.0F ? scalar_at(cut.from) : f.front[i], share = cut.from;
         for_each_crossing(ends.level_front, ends.level_back, [&](std::int32_t surface, bool rising) HWY_ATTR {
             const float v = surfaces.values[static_cast<std::size_t>(surface)];
             const float at = share_of_way(f.front[i], f.back[i], v);
+            if (at < cut.from) return true;
+            if (at > cut.to) return false;
             const glm::vec3 gradient = ends.gradient_front + at * (ends.gradient_back - ends.gradient_front);
             add_piece(d, cells, shading, tile, {front, v, before + way * (at - share), pixel, surface, rising, gradient});
             before = 0.0F;
@@ -338,7 +346,8 @@ HWY_NOINLINE void composite_with_surfaces(D d, const ScreenCells& cells, const S
             return !opaque;
         });
         if (trail.level == PixelTrail::closed) continue;
-        add_piece(d, cells, shading, tile, {front, f.back[i], before + way * (1.0F - share), pixel});
+        const float back = cut.to < 1.0F ? scalar_at(cut.to) : f.back[i];
+        add_piece(d, cells, shading, tile, {front, back, before + way * (cut.to - share), pixel});
     }
     f.clear();
     composite_pieces(d, cells, shading, tile);
@@ -353,24 +362,25 @@ struct NearestHits {
     glm::vec3 gradient[tile_side * tile_side];
 };
 
-// Only the first surface of a fragment can be the nearest one.
+// Only the first surface of a fragment, of those that are kept, can be the nearest one.
 template <bool perspective>
-HWY_INLINE void keep_nearest(const ScreenSurfaces& surfaces, const TileState& tile, std::size_t i, NearestHits& nearest) {
+HWY_INLINE void keep_nearest(const ScreenSurfaces& surfaces, const TileState& tile, std::size_t i, float first_near, NearestHits& nearest) {
     const Fragments& f = tile.fragments;
     const SurfaceEnds& ends = tile.surfaces->ends[i];
-    if (ends.level_front == ends.level_back) return;
-    const bool rising = ends.level_front < ends.level_back;
-    const std::int32_t surface = rising ? ends.level_front : ends.level_front - 1;
-    const float at = share_of_way(f.front[i], f.back[i], surfaces.values[static_cast<std::size_t>(surface)]);
-    // The scalar is linear in depth.
-    const float near = perspective ? ends.near_front * ends.near_back / (ends.near_back + at * (ends.near_front - ends.near_back))
-                                   : ends.near_front + at * (ends.near_back - ends.near_front);
     const std::int32_t pixel = f.pixel[i];
-    if (!(near > nearest.nearness[pixel])) return;
-    nearest.nearness[pixel] = near;
-    nearest.surface[pixel] = surface;
-    nearest.rising[pixel] = rising;
-    nearest.gradient[pixel] = ends.gradient_front + at * (ends.gradient_back - ends.gradient_front);
+    for_each_crossing(ends.level_front, ends.level_back, [&](std::int32_t surface, bool rising) HWY_ATTR {
+        const float at = share_of_way(f.front[i], f.back[i], surfaces.values[static_cast<std::size_t>(surface)]);
+        // The scalar is linear in depth.
+        const float near = perspective ? ends.near_front * ends.near_back / (ends.near_back + at * (ends.near_front - ends.near_back))
+                                       : ends.near_front + at * (ends.near_back - ends.near_front);
+        if (near > first_near) return true;
+        if (!(near > nearest.nearness[pixel])) return false;
+        nearest.nearness[pixel] = near;
+        nearest.surface[pixel] = surface;
+        nearest.rising[pixel] = rising;
+        nearest.gradient[pixel] = ends.gradient_front + at * (ends.gradient_back - ends.gradient_front);
+        return false;
+    });
 }
 
 // Whether every pixel of the cell's box has a surface in front of it.
@@ -394,7 +404,11 @@ HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target
     for (int p = 0; p < tile_side * tile_side; ++p) {
         nearest.nearness[p] = s.trails[p].level == PixelTrail::none ? -1e30F : s.trails[p].nearness;
         nearest.surface[p] = -1;
+        if (tile.window) nearest.nearness[p] = HWY_MAX(nearest.nearness[p], tile.window->far[p] + cells.view.base_nearness);
     }
+    const auto first_near = [&](std::int32_t pixel) HWY_ATTR {
+        return tile.window ? tile.window->near[pixel] + cells.view.base_nearness : NearnessInterval::unbounded;
+    };
     std::size_t fragments = 0;
     for (std::size_t left = items.size(); left > 0;) {
         std::uint32_t group[CellPlanes::columns];
@@ -405,9 +419,11 @@ HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target
         make_planes<perspective, false>(d, cells, group, count, tile.x, tile.y, target.width, target.height, tile.corners, tile.planes);
         for (std::size_t k = 0; k < count; ++k) {
             if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0 || is_hidden(tile.planes, k, nearest)) continue;
+            if (tile.window && !tile.window->may_keep(cells.view, tile.planes, k)) continue;
             add_crossed_cell<perspective, false>(d, cells, tile.planes, k, group[k], tile, nearest.nearness);
             fragments += tile.fragments.count;
-            for (std::size_t i = 0; i < tile.fragments.count; ++i) keep_nearest<perspective>(*cells.surfaces, tile, i, nearest);
+            for (std::size_t i = 0; i < tile.fragments.count; ++i)
+                keep_nearest<perspective>(*cells.surfaces, tile, i, first_near(tile.fragments.pixel[i]), nearest);
             tile.fragments.clear();
         }
     }

@@ -61,6 +61,7 @@ struct TileState {
     CellPlanes planes;
     Corners corners;
     SurfaceTile* surfaces = nullptr;                 // with isosurfaces
+    WindowTile* window = nullptr;                    // where rays are cut
 };
 
 // The fragments of one cell of the group, with all that isosurfaces want of them.
@@ -307,11 +308,15 @@ HWY_INLINE void add_group(D d, const ScreenCells& cells, const std::uint32_t* gr
                                        tile.planes);
     const auto finish_hits = [&]() HWY_ATTR {
         if (tile.fragments.count + tile.hits.count > Fragments::capacity) make_room();
+        if (tile.window) cut_hits(d, cells.view, tile.planes, *tile.window, tile.hits);
+        const std::size_t begin = tile.fragments.count;
         add_fragments<perspective, constant, keyed>(d, cells.view, tile.planes, tile.hits, tile.fragments);
+        if (tile.window) set_cut_lengths(*tile.window, tile.fragments.length, begin);
     };
     for (std::size_t k = 0; k < count; ++k) {
         if (tile.planes.width[k] <= 0 || tile.planes.height[k] <= 0) continue;
         if (!surfaces && (tile.planes.front_faces[k] == 0 || tile.planes.front_faces[k] == 15)) continue;  // no volume
+        if (tile.window && !tile.window->may_keep(cells.view, tile.planes, k)) continue;
         if (tile.some_closed && !meets_open_pixel(tile, tile.planes, k)) continue;
         const auto most = static_cast<std::size_t>(tile.planes.width[k]) * static_cast<std::size_t>(tile.planes.height[k]);
         if constexpr (surfaces) {

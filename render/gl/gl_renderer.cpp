@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "classify/segment_method.hpp"
+#include "render/depth_window.hpp"
 #include "render/gl/shaders.hpp"
 #include "render/order_check.hpp"
 
@@ -104,6 +105,7 @@ GlRenderer::~GlRenderer() { context_.make_current(); }
 void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
     require_drawn(Backend::gl_osmesa, quality, fields_read(scene));
     SurfacePass::require_drawn(scene, quality);
+    WindowTexture::require_drawn(scene, quality);
     context_.make_current();
     const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field &&
                             prepared_->scene().opacity_field == scene.opacity_field;
@@ -179,6 +181,12 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
 
     const Stopwatch transform;
     const CellStream cells(*prepared_, camera, size, surfaces_ ? surfaces_->drawn() : std::span<const std::uint8_t>{});
+    std::optional<DepthWindow> window;
+    windows_.reset();
+    if (DepthWindow::is_needed(scene)) {
+        window.emplace(scene, camera, size, prepared_->units().length);
+        windows_.emplace(*window, surfaces_ ? cells.nearness_frame() : cells.segment_frame(), size.width);
+    }
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
     sorted ? set_blending() : set_depth_test();
@@ -192,6 +200,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     Image image = target_.read();
     check_errors("drawing");
     keep_physical(image);
+    if (window) window->add_bodies(image);
     statistics.ms.read_back = read_back.ms();
     statistics.ms.total = total.ms();
 
@@ -227,8 +236,9 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
     const Program& segments =
         program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shaders::light_glsl + shader_->source(),
                 std::string(perspective ? "#define PERSPECTIVE\n" : "") + (two_fields ? "#define TWO_FIELDS\n" : "") +
-                    blending_define(method_));
+                    (windows_ ? "#define WINDOW\n" : "") + blending_define(method_));
     if (perspective) set_camera(segments, cells);
+    if (windows_) windows_->bind(segments);
     shader_->bind(segments);
     segments.use();
     if (two_fields) {
@@ -245,8 +255,9 @@ void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, 
     const bool medium = surfaces_->has_medium();
     const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
                                       shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
-                                      surfaces_->defines(frame.perspective));
-    surfaces_->bind(surfaces, cells, frame);
+                                      surfaces_->defines(frame.perspective) + (windows_ ? "#define WINDOW\n" : ""));
+    surfaces_->bind(surfaces, cells, frame, windows_.has_value());
+    if (windows_) windows_->bind(surfaces);
     if (medium) shader_->bind(surfaces);
     surfaces.use();
     draw<SurfaceVertex>(surface_segments_, order, statistics, [&](const ViewOrder& chunk, SurfaceBatch& batch) {

@@ -16,6 +16,7 @@
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/surface_pass.hpp"
 #include "render/gl/triangle_stream.hpp"
+#include "render/gl/window_texture.hpp"
 #include "render/prepared_scene.hpp"
 #include "render/renderer.hpp"
 
@@ -50,6 +51,7 @@ private:
     std::unique_ptr<SegmentShader> shader_;
     std::unique_ptr<VertexLighting> lighting_;
     std::unique_ptr<SurfacePass> surfaces_;  // where the scene has some
+    std::optional<WindowTexture> windows_;   // of the picture at hand, where rays are cut
 };
 
 }  // namespace cellproj::gl

@@ -98,16 +98,16 @@ std::string SurfacePass::defines(bool perspective) const {
 }
 
 // Sets what the variant reads, no more: a uniform that is not read is none.
-void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame) const {
+void SurfacePass::bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool windowed) const {
     const ScreenTransform& transform = cells.transform();
     const bool perspective = transform.perspective();
     const bool lit = shading_ != Shading::unlit;
     const auto set = [&](const char* name, double value) { program.set(name, static_cast<float>(value)); };
     if (perspective) set("inverse_far", frame.far);
-    if (perspective && has_medium_) set("inverse_near", 1.0 / cells.near_depth());
+    if (perspective && (has_medium_ || windowed)) set("inverse_near", 1.0 / cells.near_depth());
     if (!needs_order()) set("inverse_nearest", 1.0 / frame.nearest);
-    // Of translucent surfaces alone, unlit or lit by one normal for all of a cell, no place is asked for but that of the eye.
-    if (has_medium_ || !needs_order() || shading_ == Shading::smooth || (perspective && lit)) {
+    // Of translucent surfaces alone, not cut, unlit or lit by one normal for all of a cell, no place is asked for but that of the eye.
+    if (has_medium_ || windowed || !needs_order() || shading_ == Shading::smooth || (perspective && lit)) {
         const glm::dvec2 center = transform.principal_point();
         program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
         set("pixels_per_unit", transform.pixels_per_unit());

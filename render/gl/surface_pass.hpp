@@ -42,7 +42,8 @@ public:
     ViewOrder any_order() const { return {drawn_items_, {}}; }      // of the cells drawn, when they need none
 
     std::string defines(bool perspective) const;
-    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame) const;
+    // `windowed`: the variant WINDOW.
+    void bind(const Program& program, const CellStream& cells, const NearnessFrame& frame, bool windowed) const;
 
 private:
     Scene scene_;  // its transfer function: the one that `drawn_` is of

@@ -59,6 +59,15 @@ Texture Texture::table_3d(int size, TableStorage storage, std::span<const float>
 
 Texture Texture::list(std::span<const float> texels) {
     assert(!texels.empty() && texels.size() % 4 == 0);
+    return make_list(texels, GL_RGBA32F);
+}
+
+Texture Texture::list_of_pairs(std::span<const float> texels) {
+    assert(!texels.empty() && texels.size() % 2 == 0);
+    return make_list(texels, GL_RG32F);
+}
+
+Texture Texture::make_list(std::span<const float> texels, unsigned int format) {
     Texture texture;
     GLuint name = 0;
     glCreateBuffers(1, &name);
@@ -66,7 +75,7 @@ Texture Texture::list(std::span<const float> texels) {
     glNamedBufferStorage(name, static_cast<GLsizeiptr>(texels.size_bytes()), texels.data(), 0);
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &name);
     texture.texture_ = Object<delete_texture>(name);
-    glTextureBuffer(name, GL_RGBA32F, texture.buffer_.name());
+    glTextureBuffer(name, format, texture.buffer_.name());
     texture.bytes_ = texels.size_bytes();
     check_errors("uploading a list");
     return texture;

@@ -20,11 +20,15 @@ public:
     static Texture table_3d(int size, TableStorage storage, std::span<const float> texels);
     // Texels RGBA float32 to be fetched by index (samplerBuffer), nothing between them.
     static Texture list(std::span<const float> texels);
+    // The same of two channels, RG.
+    static Texture list_of_pairs(std::span<const float> texels);
 
     void bind(unsigned int unit) const;
     std::size_t bytes() const { return bytes_; }
 
 private:
+    static Texture make_list(std::span<const float> texels, unsigned int format);
+
     Object<delete_texture> texture_;
     Object<delete_buffer> buffer_;  // of a list
     std::size_t bytes_ = 0;

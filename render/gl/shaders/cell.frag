@@ -17,6 +17,11 @@ uniform vec2 principal_point;   // pixels
 uniform float pixels_per_unit;  // perspective: pixels per length at depth 1
 uniform float inverse_near;     // perspective: 1 / depth of the near plane
 
+#ifdef WINDOW
+layout(binding = 10) uniform samplerBuffer windows;  // of the pixels: what is kept of their rays, nearest and farthest nearness
+uniform float window_width;                          // pixels in a row
+#endif
+
 layout(location = 0) out vec4 light;  // associated colour, opacity
 
 // Scalars 0..1, length >= 0, all in scene units.
@@ -54,6 +59,34 @@ void main() {
 #else
     float depth_difference = thickness;
     float ray = 1.0;
+#endif
+#ifdef WINDOW
+#ifndef PERSPECTIVE
+    const bool at_near_plane = false;
+    float front = base_is_front ? -base_depth : thickness - base_depth;  // nearness, as that of the window
+    float back = front - thickness;
+#endif
+    vec2 window = texelFetch(windows, int(gl_FragCoord.x) + int(window_width) * int(gl_FragCoord.y)).xy;
+    if (window.x <= window.y) discard;
+    vec2 ends = clamp(vec2(front, back), window.y, window.x);
+    vec2 shares = front == back ? vec2(0.0, 1.0) : (front - ends) / (front - back);  // of the way from front to back, by depth
+#ifdef PERSPECTIVE
+    shares *= back / ends;
+    depth_difference = (ends.x - ends.y) / (ends.x * ends.y);
+    if (at_near_plane && window.x >= front) {  // from the eye, or from where the window begins before the near plane
+        depth_difference = 1.0 / max(back, window.y) - (window.x < 1e30 ? 1.0 / window.x : 0.0);
+        ends = vec2(depth_difference, 0.0);
+    }
+#else
+    depth_difference = ends.x - ends.y;
+#endif
+    if (ends.x == ends.y) discard;
+    s = clamp(s, v_cell.y, v_cell.z);
+    s = mix(s.xx, s.yy, clamp(shares, 0.0, 1.0));
+#ifdef TWO_FIELDS
+    s_opacity = clamp(s_opacity, v_opacity_range.x, v_opacity_range.y);
+    s_opacity = mix(s_opacity.xx, s_opacity.yy, clamp(shares, 0.0, 1.0));
+#endif
 #endif
     // Pixel centres just outside a sliver extrapolate; no segment leaves the cell's own range.
     float segment = min(abs(depth_difference), abs(v_cell.w)) * ray;

@@ -6,6 +6,7 @@
 //   LIT       surfaces are shaded by the gradient, one for the cell or
 //   SMOOTH    linear in it
 //   NEAREST   all are opaque and there is no medium: the first crossing, for the depth test
+//   WINDOW    of each ray only a part is kept
 in vec3 v_ridges;
 flat in vec4 v_faces[8];
 flat in vec4 v_scalars;
@@ -25,6 +26,11 @@ uniform float pixels_per_unit; // perspective: at depth 1
 uniform float inverse_near;    // perspective: 1 / depth of the near plane
 uniform float inverse_nearest; // 1 / the largest nearness
 layout(binding = 8) uniform samplerBuffer surfaces;  // three each: threshold, isovalue, opacity; front colour; back colour
+
+#ifdef WINDOW
+layout(binding = 10) uniform samplerBuffer windows;  // of the pixels: what is kept of their rays, nearest and farthest nearness
+uniform float window_width;                          // pixels in a row
+#endif
 
 layout(location = 0) out vec4 light;  // associated colour, opacity
 
@@ -123,6 +129,22 @@ void main() {
 #endif
     depth_difference = min(depth_difference, abs(v_cell.z));
     float segment = depth_difference * ray;
+    vec2 kept = vec2(0.0, 1.0);  // of the way from front to back
+#ifdef WINDOW
+    vec2 window = texelFetch(windows, int(gl_FragCoord.x) + int(window_width) * int(gl_FragCoord.y)).xy;
+    if (window.x <= window.y || window.x <= back.x || (window.y >= front.x && lead == 0.0)) discard;
+    vec2 cuts = clamp((front.x - window) / max(front.x - back.x, 1e-30), 0.0, 1.0);
+#ifdef PERSPECTIVE
+    cuts = clamp(cuts * back_inverse / max(window + inverse_far, 1e-30), 0.0, 1.0);
+    if (window.x >= front.x && lead > 0.0)
+        lead = max(1.0 / max(front_inverse, window.y + inverse_far) - (window.x < 1e30 ? 1.0 / (window.x + inverse_far) : 0.0), 0.0) * ray;
+#endif
+    if (window.x < front.x) {
+        kept.x = cuts.x;
+        lead = 0.0;
+    }
+    if (window.y > back.x) kept.y = window.y < front.x ? cuts.y : 0.0;
+#endif
     // The field at both ends, in the cell's own range beyond which slivers extrapolate. `front` and `back` tell the sides of surfaces.
     vec3 place_in_front = place_at(offset, front_depth), place_behind = place_at(offset, front_depth + depth_difference);
     vec4 at_front = v_map + v_slopes * place_in_front, at_back = v_map + v_slopes * place_behind;
@@ -151,14 +173,26 @@ void main() {
     vec3 share_of_color = reflected(v_map.xyz, to_eye);
 #endif
 #endif
-    float at = 0.0, s_at = s.x;  // where the last crossing was, as a share of the segment, and the scalar there
+    float at = kept.x, s_at = mix(s.x, s.y, kept.x);  // where the last crossing was, as a share of the segment, and the scalar there
     for (;;) {
         bool crossed = k != end;
         int surface = 3 * max(rising ? k : k - 1, 0);
         vec4 about = texelFetch(surfaces, surface);
-        float share = crossed && s.x != s.y ? clamp((about.y - s.x) / (s.y - s.x), at, 1.0) : 1.0;
+        float share = crossed && s.x != s.y ? clamp((about.y - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
+#ifdef WINDOW
+        if (crossed && share < kept.x) {
+            k += rising ? 1 : -1;
+            continue;
+        }
+        crossed = crossed && share <= kept.y;
+        share = min(share, kept.y);
+#ifdef NEAREST
+        if (!crossed) discard;
+#endif
+#endif
+        share = max(share, at);
 #ifdef MEDIUM
-        float s_here = crossed ? clamp(about.y, min(s.x, s.y), max(s.x, s.y)) : s.y;
+        float s_here = crossed ? clamp(about.y, min(s.x, s.y), max(s.x, s.y)) : mix(s.x, s.y, share);
         float part = (share - at) * segment + lead;
 #ifdef TWO_FIELDS
         vec2 from = vec2(s_at, mix(s_opacity.x, s_opacity.y, at)), to = vec2(s_here, mix(s_opacity.x, s_opacity.y, share));

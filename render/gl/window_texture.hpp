@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What clip regions and bodies leave of the rays of a picture (render/depth_window.hpp), as fragments cut their segments by it: the variants
+// WINDOW of shaders/cell.frag and shaders/surfaces.frag.
+#pragma once
+
+#include "render/depth_window.hpp"
+#include "render/gl/objects.hpp"
+#include "render/gl/textures.hpp"
+#include "render/renderer.hpp"
+#include "render/surface_vertex.hpp"
+
+namespace cellproj::gl {
+
+class WindowTexture {
+public:
+    // Throws Error (option) for a scene with cuts and a method of light at the vertices, which knows no place in a segment.
+    static void require_drawn(const Scene& scene, const Quality& quality);
+
+    // `frame`: that of the fragments' nearness.
+    WindowTexture(const DepthWindow& window, const NearnessFrame& frame, int width);
+
+    void bind(const Program& program) const;
+
+private:
+    Texture texels_;
+    int width_;
+};
+
+}  // namespace cellproj::gl

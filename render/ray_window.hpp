@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The judge's view of clip regions and bodies: what they leave of one ray. Every plane and every triangle is asked, each by itself.
+//
+// Triangles are decided as the cells of ray_index.hpp are: vertices are seen in the frame of the ray, and the sign of a difference of two
+// products is exact (Kahan). A ray through an edge meets the triangles on both sides of it, so that a closed surface has no holes; of
+// what is met at one place the first triangle counts.
+#pragma once
+
+#include <optional>
+
+#include <glm/vec3.hpp>
+
+#include "render/ray_index.hpp"
+#include "render/scene.hpp"
+
+namespace cellproj {
+
+// Where a ray meets a body first.
+struct BodyHit {
+    double t;                // on the ray [mesh units]
+    const Body* body;
+    glm::dvec3 normal;       // of the triangle, of any length; along its corners' turn
+};
+
+struct RayWindow {
+    double begin, end;            // of what the clip region keeps [t]; begin > end: nothing
+    std::optional<BodyHit> body;  // from the ray's start on, clipped or not
+
+    // Of the field: from `begin` to here.
+    double end_of_field() const { return body && body->t < end ? body->t : end; }
+};
+
+// `middle`: what the ray is relative to (RayIndex::middle). O(#planes + #triangles).
+RayWindow ray_window(const Scene& scene, const glm::dvec3& middle, const ViewRay& ray);
+
+}  // namespace cellproj
