@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <vtkActor.h>
 #include <vtkAutoInit.h>
-#include <vtkCamera.h>
 #include <vtkContourFilter.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
@@ -13,7 +12,8 @@
 #include <vtkUnstructuredGrid.h>
 
 #include "apps/bench/iso_contender.hpp"
-#include "apps/bench/vtk_grid.hpp"
+#include "apps/bench/vtk_mesh.hpp"
+#include "apps/bench/vtk_view.hpp"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 
@@ -59,12 +59,7 @@ public:
         smooth ? property->SetInterpolationToPhong() : property->SetInterpolationToFlat();
     }
 
-    void draw(const Camera& camera) override {
-        set_vtk_view(*renderer_->GetActiveCamera(), camera);
-        renderer_->ResetCameraClippingRange();
-        window_->Render();
-        window_->WaitForCompletion();
-    }
+    void draw(const Camera& camera) override { bench::draw(*window_, *renderer_, camera); }
 
     std::size_t triangles() const override { return static_cast<std::size_t>(mapper_->GetInput()->GetNumberOfPolys()); }
 

@@ -1,52 +1,93 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/bench/vtk_grid.hpp"
 
-#include <vtkCamera.h>
-#include <vtkCellArray.h>
+#include <vtkAutoInit.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkFixedPointVolumeRayCastMapper.h>
 #include <vtkFloatArray.h>
-#include <vtkIdTypeArray.h>
+#include <vtkImageData.h>
 #include <vtkNew.h>
+#include <vtkPiecewiseFunction.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkSmartPointer.h>
-#include <vtkUnstructuredGrid.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/bench/vtk_view.hpp"
+
+VTK_MODULE_INIT(vtkRenderingOpenGL2)
+VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2)
 
 namespace cellproj::bench {
 
-vtkSmartPointer<vtkUnstructuredGrid> make_vtk_grid(const Scene& scene) {
-    const TetMesh& mesh = *scene.mesh;
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToFloat();
-    points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points.size()));
+struct VtkFixedPoint::Parts {
+    ImageSize size;
+    vtkNew<vtkImageData> image;
+    vtkNew<vtkVolumeProperty> property;
+    vtkNew<vtkFixedPointVolumeRayCastMapper> mapper;
+    vtkNew<vtkVolume> volume;
+    vtkNew<vtkRenderer> renderer;
+    vtkNew<vtkRenderWindow> window;
+};
+
+VtkFixedPoint::VtkFixedPoint(const Grid& grid, const TransferFunction& transfer, ImageSize size, double step)
+    : parts_(std::make_unique<Parts>()) {
+    Parts& p = *parts_;
+    p.size = size;
+    const GridDimensions n = grid.dimensions();
+    p.image->SetDimensions(static_cast<int>(n.ni), static_cast<int>(n.nj), static_cast<int>(n.nk));
+    const auto& axes = grid.axes;
+    p.image->SetOrigin(axes[0].coordinates[0], axes[1].coordinates[0], axes[2].coordinates[0]);
+    p.image->SetSpacing(axes[0].width(0), axes[1].width(0), axes[2].width(0));
     vtkNew<vtkFloatArray> scalars;
     scalars->SetName("f");
-    scalars->SetNumberOfValues(static_cast<vtkIdType>(mesh.points.size()));
-    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-        const auto id = static_cast<vtkIdType>(v);
-        points->SetPoint(id, mesh.points[v].x, mesh.points[v].y, mesh.points[v].z);
-        scalars->SetValue(id, static_cast<float>(scene.field->values[v]));
+    scalars->SetNumberOfValues(static_cast<vtkIdType>(grid.values.size()));
+    for (std::size_t i = 0; i < grid.values.size(); ++i)
+        scalars->SetValue(static_cast<vtkIdType>(i), static_cast<float>(grid.values[i]));
+    p.image->GetPointData()->SetScalars(scalars);
+
+    // α = 1 − exp(−τ·u) of a short u: as good as linear in τ between the nodes, and VTK's own (1 − α)^(step/u) gives back exp(−τ·step).
+    double densest = 0;
+    for (const ExtinctionNode& node : transfer.extinction_nodes()) densest = std::max(densest, node.extinction);
+    const double unit = 0.002 / densest;
+    vtkNew<vtkColorTransferFunction> color;
+    vtkNew<vtkPiecewiseFunction> opacity;
+    for (const double s : transfer.breakpoints()) {
+        const glm::dvec3 c = transfer.color(s);
+        color->AddRGBPoint(s, c.r, c.g, c.b);
+        opacity->AddPoint(s, -std::expm1(-transfer.extinction(s) * unit));
     }
-    vtkNew<vtkIdTypeArray> corners;
-    corners->SetNumberOfValues(static_cast<vtkIdType>(4 * mesh.tets.size()));
-    vtkIdType next = 0;
-    for (const auto& tet : mesh.tets)
-        for (const VertexId v : tet) corners->SetValue(next++, v);
-    vtkNew<vtkCellArray> cells;
-    cells->SetData(4, corners);
-    auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-    grid->SetPoints(points);
-    grid->SetCells(VTK_TETRA, cells);
-    grid->GetPointData()->SetScalars(scalars);
-    return grid;
+    p.property->SetColor(color);
+    p.property->SetScalarOpacity(opacity);
+    p.property->SetScalarOpacityUnitDistance(unit);
+    p.property->SetInterpolationTypeToLinear();
+    p.property->ShadeOff();
+
+    p.mapper->SetInputData(p.image);
+    p.mapper->SetAutoAdjustSampleDistances(false);
+    p.mapper->SetLockSampleDistanceToInputSpacing(false);
+    p.mapper->SetImageSampleDistance(1.0F);
+    p.mapper->SetSampleDistance(static_cast<float>(step * axes[0].width(0)));
+    p.mapper->SetInteractiveSampleDistance(p.mapper->GetSampleDistance());
+    p.mapper->SetIntermixIntersectingGeometry(false);
+    p.volume->SetMapper(p.mapper);
+    p.volume->SetProperty(p.property);
+    p.renderer->AddVolume(p.volume);
+    p.renderer->SetBackground(0, 0, 0);
+    p.window->SetOffScreenRendering(true);
+    p.window->SetMultiSamples(0);
+    p.window->SetSize(size.width, size.height);
+    p.window->AddRenderer(p.renderer);
 }
 
-void set_vtk_view(vtkCamera& view, const Camera& camera) {
-    view.SetPosition(camera.eye.x, camera.eye.y, camera.eye.z);
-    view.SetFocalPoint(camera.center.x, camera.center.y, camera.center.z);
-    view.SetViewUp(camera.up.x, camera.up.y, camera.up.z);
-    view.SetParallelProjection(camera.projection == Camera::Projection::parallel);
-    view.SetParallelScale(0.5 * camera.height);
-    view.SetViewAngle(camera.fov_y_degrees);
-}
+VtkFixedPoint::~VtkFixedPoint() = default;
+
+void VtkFixedPoint::draw(const Camera& camera) { bench::draw(*parts_->window, *parts_->renderer, camera); }
+
+Image VtkFixedPoint::picture() const { return picture_of(*parts_->window, parts_->size); }
 
 }  // namespace cellproj::bench

@@ -12,6 +12,7 @@
 #include "input.hpp"
 #include "iso_options.hpp"
 #include "project/camera.hpp"
+#include "render/grid_scene.hpp"
 #include "render/renderer.hpp"
 #include "render/scene.hpp"
 #include "surface_input.hpp"
@@ -27,6 +28,7 @@ struct SceneOptions {
 
     InputOptions input;
     bool tetrahedralize = false;
+    DrawnAs drawn_as = DrawnAs::tets;  // --as, where a command has it
     SurfaceOptions surface;
     std::filesystem::path camera, transfer;
     std::string field, opacity_field, projection = "perspective", size = "512x512", cell_values = "constant";
@@ -51,11 +53,12 @@ ImageSize require_possible(const SceneOptions& options);
 
 struct LoadedScene {
     Input input;
-    Scene scene;
+    Scene scene;                    // of a grid that is drawn as it is: a mesh without cells
+    std::optional<GridScene> grid;  // set for such a one
 };
 
 // Reads the mesh and chooses field and transfer function; warns of values that are not finite. Throws Error.
-LoadedScene load_scene(const SceneOptions& options);
+LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as = DrawnAs::tets);
 
 // The cameras of --camera or of the embedded scene, or one that sees the mesh, from every side of it if it is to `turn`.
 std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& input, ImageSize size, bool turn);

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is drawn of a regular grid, as scene.hpp of a mesh: shared, immutable parts, so that a renderer can recognise
+// what it has prepared already.
+#pragma once
+
+#include <memory>
+
+#include "classify/transfer_function.hpp"
+#include "mesh/grid.hpp"
+#include "render/surface_scene.hpp"
+
+namespace cellproj {
+
+// Neither of the first two may be null. Do not change them while a renderer may use them.
+struct GridScene {
+    std::shared_ptr<const Grid> grid;
+    std::shared_ptr<const TransferFunction> transfer;
+    std::shared_ptr<const SurfaceScene> surfaces = nullptr;  // null: none; they lie in the medium of `transfer`
+};
+
+bool has_surfaces(const GridScene& scene);
+
+// Throws Error (data) when the grid is not sound (mesh/grid.hpp) or all its cells are blanked, Error (option) for
+// isosurfaces of a field on cells, which has none, and for lights out of range.
+void validate(const GridScene& scene);
+
+// What a renderer counts in, so that float32 serves grids and fields of any scale: as SceneUnits of a mesh
+// (prepared_scene.hpp).
+struct GridUnits {
+    double length;       // half the diagonal of the grid's box [mesh units], > 0
+    double scalar_low;   // smallest value of the cells that are not blanked
+    double scalar_high;  // largest one
+
+    // 0 at scalar_low, 1 at scalar_high; 0 for a constant field. Values that only blanked cells have may lie outside.
+    double normalized(double s) const {
+        return scalar_high > scalar_low ? (s - scalar_low) / (scalar_high - scalar_low) : 0.0;
+    }
+};
+
+// Of a sound grid. O(cells).
+GridUnits units_of(const Grid& grid);
+
+}  // namespace cellproj
