@@ -151,6 +151,10 @@ void Program::set(const char* uniform, float x, float y) const {
     glProgramUniform2f(program_.name(), location(uniform), x, y);
 }
 
+void Program::set(const char* uniform, const glm::vec3& value) const {
+    glProgramUniform3f(program_.name(), location(uniform), value.x, value.y, value.z);
+}
+
 void Program::set(const char* uniform, const glm::vec4& value) const {
     glProgramUniform4f(program_.name(), location(uniform), value.x, value.y, value.z, value.w);
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "project/camera.hpp"
@@ -87,6 +88,7 @@ public:
     void use() const;
     void set(const char* uniform, float value) const;  // asserts that the uniform exists
     void set(const char* uniform, float x, float y) const;
+    void set(const char* uniform, const glm::vec3& value) const;
     void set(const char* uniform, const glm::vec4& value) const;
 
 private:

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Regular grids through OpenGL, after Wilhelms and Van Gelder, "A Coherent Projection Approach for Direct Volume Rendering", 1991.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "project/camera.hpp"
+#include "render/gl/grid_volume.hpp"
+#include "render/gl/objects.hpp"
+#include "render/gl/osmesa_context.hpp"
+#include "render/gl/segment_shader.hpp"
+#include "render/gl/triangle_stream.hpp"
+#include "render/grid_renderer.hpp"
+
+namespace cellproj::gl {
+
+// Throws Error (option) for what this backend does not draw of grids.
+void require_grid_drawn(const GridQuality& quality, bool surfaces);
+
+class GlGridRenderer : public GridRenderer {
+public:
+    explicit GlGridRenderer(OsmesaContext context);
+    ~GlGridRenderer() override;
+
+    void prepare(const GridScene& scene, const GridQuality& quality) override;
+    Image render(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality,
+                 Statistics* statistics) override;
+
+private:
+    void prepare_light(const GridQuality& quality, bool same_grid);
+    const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
+    void draw_cells(const Camera& camera, ImageSize size, Statistics& statistics);
+
+    OsmesaContext context_;
+    std::map<std::string, Program> programs_;  // by their text
+    TriangleStream indices_;
+    Target target_;
+    GridScene scene_;
+    std::optional<GridVolume> volume_;
+    Method method_;
+    std::unique_ptr<SegmentShader> shader_;  // of method_, for the prepared scene
+};
+
+}  // namespace cellproj::gl

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a view does not change of a grid in OpenGL: its scalars as a texture, and which cells can be seen.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "render/gl/textures.hpp"
+#include "render/grid_scene.hpp"
+
+namespace cellproj::gl {
+
+class GridVolume {
+public:
+    // Of a sound scene. Throws Error (option) where the driver takes no grid that large.
+    explicit GridVolume(const GridScene& scene);
+
+    const GridUnits& units() const { return units_; }
+    // Per cell: 0 for those that add nothing to any picture, blanked or without emission and extinction over their scalars.
+    const std::vector<std::uint8_t>& drawn() const { return drawn_; }
+    const Texture& values() const { return values_; }
+    // 4·volume / surface of a cell by Cauchy's formula, in the mean over all [GridUnits::length], > 0.
+    double mean_chord() const { return mean_chord_; }
+
+    // Another function over the same grid.
+    void set_transfer(const Grid& grid, const TransferFunction& transfer);
+
+private:
+    GridUnits units_;
+    double mean_chord_;
+    Texture values_;
+    std::vector<std::uint8_t> drawn_;
+};
+
+// The planes of all axes about a point, [GridUnits::length], as texels of four.
+std::vector<float> planes_about(const Grid& grid, const glm::dvec3& reference, double length);
+
+}  // namespace cellproj::gl
