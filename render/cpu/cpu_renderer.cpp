@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "classify/piece_table.hpp"
 #include "classify/segment_method.hpp"
+#include "render/cpu/classification.hpp"
 #include "render/cpu/kernels.hpp"
 #include "render/cpu/screen_mesh.hpp"
 #include "render/cpu/tile_bins.hpp"
@@ -25,58 +25,6 @@
 namespace cellproj::cpu {
 
 namespace {
-
-// In scene units, where half the diagonal of the mesh's box is 1: no segment is longer than the diagonal.
-constexpr double longest_segment = 2.0;
-
-// What may shine through before a pixel counts as opaque. Twenty times below a step of 8 bits where colours are at most 1.
-constexpr double hidden_share = 1e-4;
-
-// A method as the kernels want it.
-class Classification {
-public:
-    Classification(const Method& method, const TransferFunction& transfer, double mean_length) : method_(method) {
-        if (!by_pieces()) tables_.emplace(method, transfer, longest_segment, mean_length);
-        set_transfer(transfer);
-    }
-    Classification(const Classification&) = delete;
-    Classification& operator=(const Classification&) = delete;
-
-    void set_transfer(const TransferFunction& transfer) {
-        shading_.half_opacity = method_.blending == Blending::half;
-        double hidden = hidden_share;
-        if (by_pieces()) {
-            const PieceTable table = make_piece_table(transfer);
-            const WalkLimits limits = walk_limits(method_, table, longest_segment);
-            pieces_.emplace(method_, table, limits);
-            bytes_ = table.bytes();
-            shading_.pieces = &*pieces_;
-            // `integral` looks down to 1e-6 in a segment, relative to the brightest colour.
-            hidden = std::min(hidden, std::exp(-limits.deepest) * (method_.kind == MethodKind::integral ? 100.0 : 1.0));
-        } else {
-            tables_->set_transfer(transfer);
-            bytes_ = tables_->bytes;
-            shading_.tables = &*tables_;
-        }
-        may_be_opaque_ = transfer.max_extinction(0.0, 1.0) * longest_segment > -std::log(hidden);
-        shading_.opaque = static_cast<float>(1.0 - hidden);
-    }
-
-    const Shading& shading() const { return shading_; }
-    std::size_t bytes() const { return bytes_; }
-    // Whether a ray can become opaque at all: along the whole diagonal, through the largest extinction.
-    bool may_be_opaque() const { return may_be_opaque_; }
-
-private:
-    bool by_pieces() const { return method_.kind == MethodKind::integral || method_.kind == MethodKind::exact; }
-
-    Method method_;
-    std::optional<PieceArrays> pieces_;
-    std::optional<MethodTables> tables_;
-    Shading shading_;
-    std::size_t bytes_ = 0;
-    bool may_be_opaque_ = false;
-};
 
 class CpuRenderer : public Renderer {
 public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // classify/piece_walk.cpp for as many segments at once as a vector has lanes, in float32: the light of segments by the pieces of
-// the transfer function. Included once per instruction set, behind Highway; private to kernels.cpp.
+// the transfer function. Included once per instruction set, behind Highway; private to the files of kernels.
 //
 // Where this differs from the float64 model: in the density model `integral` takes the opacity of parts that are no deeper than 1 times
 // the colour where their light starts in the mean (mean_place), without quadrature.
@@ -340,6 +340,11 @@ public:
         : d_(d), begin_(hn::Set(d, table.begin[at(piece)])), per_width_(hn::Set(d, table.inverse_width[at(piece)])),
           extinction_(d, table.extinction[0], table.extinction[1], at(piece)), red_(d, table.color[0][0], table.color[1][0], at(piece)),
           green_(d, table.color[0][1], table.color[1][1], at(piece)), blue_(d, table.color[0][2], table.color[1][2], at(piece)) {}
+    // A piece of its own for each lane.
+    HWY_INLINE LightInPiece(D d, const PieceArrays& table, const PerLane<D>& piece)
+        : d_(d), begin_(piece.of(table.begin)), per_width_(piece.of(table.inverse_width)), extinction_(piece, table.extinction[0], table.extinction[1]),
+          red_(piece, table.color[0][0], table.color[1][0]), green_(piece, table.color[0][1], table.color[1][1]),
+          blue_(piece, table.color[0][2], table.color[1][2]) {}
 
     // Right where `depth` is at most mean_place_depth.
     HWY_INLINE LightOf<V> operator()(V s_f, V s_b, V length, V& depth) const {
@@ -360,6 +365,8 @@ private:
         V first, change;
         HWY_INLINE Linear(D d, const std::vector<float>& begins, const std::vector<float>& ends, std::size_t i)
             : first(hn::Set(d, begins[i])), change(hn::Set(d, ends[i] - begins[i])) {}
+        HWY_INLINE Linear(const PerLane<D>& piece, const std::vector<float>& begins, const std::vector<float>& ends)
+            : first(piece.of(begins)), change(hn::Sub(piece.of(ends), first)) {}
         HWY_INLINE V at(V t) const { return hn::MulAdd(change, t, first); }
     };
     static std::size_t at(std::int32_t piece) { return static_cast<std::size_t>(piece); }

@@ -2,7 +2,7 @@
 //
 // The light of segments by the methods without pieces: classify/sampled_methods.cpp, mean_tables.cpp and preintegration_table.cpp
 // for as many segments at once as a vector has lanes, in float32. Depths are cut off at 1e30, which is as opaque as can be, so that
-// no product is infinite times 0. Included once per instruction set, behind Highway; private to kernels.cpp.
+// no product is infinite times 0. Included once per instruction set, behind Highway; private to the files of kernels.
 #if defined(CELLPROJ_TABLE_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CELLPROJ_TABLE_LIGHT_INL
 #undef CELLPROJ_TABLE_LIGHT_INL
@@ -165,6 +165,15 @@ HWY_INLINE LightOf<V> half_opacity(D d, const LightOf<V>& cell) {
     LightOf<V> light = scaled(d, cell, hn::NegMulAdd(hn::Set(d, 0.5F), cell.opacity, one));
     light.opacity = hn::Mul(cell.opacity, hn::NegMulAdd(hn::Set(d, 0.25F), cell.opacity, one));
     return light;
+}
+
+// The light of segments as any method finds it. `constant`: s_f = s_b, as for fields on cells.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE LightOf<V> shade(D d, const Shading& shading, bool constant, V s_f, V s_b, V length) {
+    const LightOf<V> light = shading.tables ? light_of_tables(d, *shading.tables, s_f, s_b, length)
+                             : constant     ? light_of_constants(d, *shading.pieces, s_f, length)
+                                            : light_of_segments(d, *shading.pieces, s_f, s_b, length);
+    return shading.half_opacity ? half_opacity(d, light) : light;
 }
 
 }  // namespace cellproj::cpu::HWY_NAMESPACE

@@ -72,14 +72,6 @@ void composite_with_surfaces(D d, const ScreenCells& cells, const Shading& shadi
 void append_ends(const TileState& tile, PendingFragments& pending);
 void set_ends(const SurfaceEnds& ends, std::size_t fragment, TileState& tile);
 
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE LightOf<V> shade(D d, const Shading& shading, bool constant, V s_f, V s_b, V length) {
-    const LightOf<V> light = shading.tables ? light_of_tables(d, *shading.tables, s_f, s_b, length)
-                             : constant     ? light_of_constants(d, *shading.pieces, s_f, length)
-                                            : light_of_segments(d, *shading.pieces, s_f, s_b, length);
-    return shading.half_opacity ? half_opacity(d, light) : light;
-}
-
 // Puts the light of some of a vector's fragments behind what there is at their pixels, one after the other.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void blend(D d, const LightOf<V>& l, const std::int32_t* pixel, std::size_t count, TileState& tile) {

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What drawing a regular grid costs and how wrong it is: the CPU renderer's methods, the same grid as tetrahedra, and,
+// where this is built with VTK (CELLPROJ_BENCH_VTK=ON), its fixed-point ray caster at two sample distances, in one run.
+//
+//   cellproj_grids [CELLS [SIDE [FRAMES]]]     default: 100 512 5
+//
+// A cube of CELLS³ cells, SIDE² pixels, medians of FRAMES views. CPU: user time of all threads. Errors of RGB against
+// GridReference at every 17th pixel of one view; VTK's picture has 8 bits (.0011 RMS at best).
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/bench/cpu_time.hpp"
+#include "apps/scenes/measured_scenes.hpp"
+#include "render/grid_reference.hpp"
+#include "render/grid_renderer.hpp"
+#include "tests/support/grids.hpp"
+#include "tests/support/scenes.hpp"
+#if CELLPROJ_BENCH_VTK
+#include "apps/bench/frames_process.hpp"
+#include "apps/bench/vtk_grid.hpp"
+#endif
+
+namespace {
+
+using namespace cellproj;
+using Draw = std::function<void(const Camera&)>;
+
+struct Run {
+    std::shared_ptr<const Grid> grid;
+    std::shared_ptr<const TransferFunction> transfer;
+    Camera::Projection projection;
+    ImageSize size;
+    int frames;
+    std::vector<PixelTruth> truths;  // of view 0
+};
+
+std::vector<PixelId> judged_pixels(ImageSize size) {
+    std::vector<PixelId> pixels;
+    for (const PixelId& pixel : all_pixels(size))
+        if ((pixel.x + size.width * pixel.y) % 17 == 0) pixels.push_back(pixel);
+    return pixels;
+}
+
+Camera view(const Run& run, int i) { return scenes::measured_view(i, {glm::dvec3(0), glm::dvec3(1)}, run.projection); }
+
+void measure(const Run& run, const std::string& name, const Draw& draw, const std::function<Image()>& picture) {
+    draw(view(run, 0));
+    const ErrorMeasure error = compare(picture(), run.truths).color;
+    std::vector<double> cpu, wall;
+    for (int frame = 1; frame <= run.frames; ++frame) {
+        const Stopwatch watch;
+        const double before = bench::user_ms();
+        draw(view(run, frame));
+        cpu.push_back(bench::user_ms() - before);
+        wall.push_back(watch.ms());
+    }
+    std::printf("  %-22s %9.1f %9.1f %10.1e %10.1e\n", name.c_str(), median(cpu), median(wall), error.rms, error.maximum);
+    std::fflush(stdout);
+}
+
+void measure_grid(const Run& run, const std::string& method) {
+    const auto renderer = make_grid_renderer(Backend::cpu);
+    const GridScene scene{run.grid, run.transfer};
+    const GridQuality quality{.method = parse_method(method)};
+    Image image;
+    measure(run, method, [&](const Camera& camera) { image = renderer->render(scene, camera, run.size, quality); }, [&] { return image; });
+}
+
+void measure_tets(const Run& run) {
+    const Scene scene = testing_support::scene_of(testing_support::grid_mesh(static_cast<int>(run.grid->axes[0].cells())), scenes::waves, *run.transfer);
+    const auto renderer = make_renderer(Backend::cpu);
+    Image image;
+    measure(run, "as tetrahedra", [&](const Camera& camera) { image = renderer->render(scene, camera, run.size); }, [&] { return image; });
+}
+
+#if CELLPROJ_BENCH_VTK
+void measure_vtk(const Run& run, double step) {
+    bench::VtkFixedPoint vtk(*run.grid, *run.transfer, run.size, step);
+    char name[40];
+    std::snprintf(name, sizeof name, "VTK fixed point, %.2g", step);
+    measure(run, name, [&](const Camera& camera) { vtk.draw(camera); }, [&] { return vtk.picture(); });
+}
+#endif
+
+void run_all(std::size_t cells, int side, int frames) {
+    const auto grid = std::make_shared<const Grid>(testing_support::unit_cube(cells, scenes::waves));
+    std::printf("%zu^3 cells, %dx%d, a new view every frame\n  %-22s %9s %9s %10s %10s\n", cells, side, side, "", "CPU ms", "wall ms",
+                "RMS", "max");
+    for (const bool ramp : {true, false}) {
+        const auto transfer = std::make_shared<const TransferFunction>(ramp ? scenes::ramp() : scenes::table_peaks());
+        for (const auto projection : {Camera::Projection::parallel, Camera::Projection::perspective}) {
+            Run run{grid, transfer, projection, {side, side}, frames, {}};
+            run.truths = GridReference(grid, transfer).pixels(view(run, 0), run.size, judged_pixels(run.size));
+            std::printf("%s, %s\n", ramp ? "ramp" : "peaks", projection == Camera::Projection::parallel ? "parallel" : "perspective");
+            for (const char* method : {"integral", "exact:1e-3", "exact:1e-5", "homogeneous", "preint3d:64"}) measure_grid(run, method);
+#if CELLPROJ_BENCH_VTK
+            measure_vtk(run, 1.0);
+            measure_vtk(run, 0.5);
+#endif
+            if (cells <= 64) measure_tets(run);
+        }
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const auto number = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
+        const int cells = number(1, 100), side = number(2, 512), frames = number(3, 5);
+        if (cells < 1 || side < 1 || side > 16384 || frames < 1) throw std::invalid_argument("CELLS, SIDE and FRAMES are numbers above 0");
+#if CELLPROJ_BENCH_VTK
+        const bench::VirtualDisplay display(true);
+#endif
+        run_all(static_cast<std::size_t>(cells), side, frames);
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "cellproj_grids: %s\n", error.what());
+        return 1;
+    }
+}

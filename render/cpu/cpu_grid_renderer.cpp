@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/cpu/cpu_grid_renderer.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/partitioner.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "classify/segment_method.hpp"
+#include "render/cpu/classification.hpp"
+#include "render/cpu/grid_kernels.hpp"
+#include "render/cpu/grid_volume.hpp"
+
+namespace cellproj::cpu {
+
+namespace {
+
+// How far scalars may stay away from the true ones, in a unit of their range, so that a ray's light is within
+// `tolerance`: with |τ'| and |q'| at most L, |∫ τ(s) − τ(s + δ)| ≤ L·δ·length, likewise for q. A step of the function
+// has no such L; there δ is the tolerance itself.
+double bend_within(double tolerance, const TransferFunction& transfer) {
+    double steepest = 0, step = 0;
+    const std::vector<LinearPiece>& pieces = transfer.pieces();
+    const bool density = transfer.model() == OpticalModel::density;
+    const auto most = [](const glm::dvec3& c) { return std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}); };
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const LinearPiece& p = pieces[i];
+        const double thickest = density ? std::max(p.extinction_begin, p.extinction_end) : 1.0;
+        const double change = std::abs(p.extinction_end - p.extinction_begin);
+        const double color_change = most(p.color_end - p.color_begin) * thickest +
+                                    (density ? std::max(most(p.color_begin), most(p.color_end)) * change : 0.0);
+        if (std::isfinite(p.begin) && std::isfinite(p.end)) steepest = std::max(steepest, std::max(change, color_change) / (p.end - p.begin));
+        if (i == 0) continue;
+        const LinearPiece& before = pieces[i - 1];
+        step = std::max({step, std::abs(p.extinction_begin - before.extinction_end), most(p.color_begin - before.color_end)});
+    }
+    const double within = steepest > 0 ? tolerance / (longest_segment * steepest) : std::numeric_limits<double>::infinity();
+    return step > 0 ? std::min(within, tolerance) : within;
+}
+
+class CpuGridRenderer : public GridRenderer {
+public:
+    explicit CpuGridRenderer(int threads) : arena_(threads > 0 ? threads : oneapi::tbb::task_arena::automatic) {}
+
+    void prepare(const GridScene& scene, const GridQuality& quality) override {
+        require_grid_drawn(Backend::cpu, quality, has_surfaces(scene));
+        arena_.execute([&] { prepare_here(scene, quality); });
+    }
+
+    Image render(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality,
+                 Statistics* statistics) override {
+        validate(camera, "camera");
+        validate(size, "size");
+        require_grid_drawn(Backend::cpu, quality, has_surfaces(scene));
+        return arena_.execute([&] { return render_here(scene, camera, size, quality, statistics); });
+    }
+
+private:
+    void prepare_here(const GridScene& scene, const GridQuality& quality);
+    Image render_here(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality, Statistics* out);
+    std::size_t draw(Image& image, const ScreenTransform& transform) const;
+
+    oneapi::tbb::task_arena arena_;
+    GridScene scene_;
+    std::optional<GridVolume> volume_;              // of scene_.grid
+    Method method_;
+    std::optional<Classification> classification_;  // of method_ and scene_.transfer
+    float bend_ = 0;
+};
+
+// Brings what depends on the scene and the quality up to date; usually there is nothing to do.
+void CpuGridRenderer::prepare_here(const GridScene& scene, const GridQuality& quality) {
+    const bool same_grid = volume_ && scene_.grid == scene.grid;
+    if (!same_grid) {
+        validate(scene);
+        classification_.reset();
+        volume_.reset();
+        volume_.emplace(*scene.grid);
+    }
+    const bool same_transfer = same_grid && scene_.transfer == scene.transfer;
+    if (same_transfer && classification_ && method_ == quality.method) return;
+
+    const GridUnits& units = volume_->units();
+    const TransferFunction transfer = in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
+    scene_ = scene;
+    method_ = quality.method;
+    classification_.reset();
+    classification_.emplace(method_, transfer, volume_->mean_chord());
+    volume_->set_transfer(transfer);
+    const double bend = method_.kind == MethodKind::exact ? bend_within(method_.tolerance, transfer)
+                                                          : std::numeric_limits<double>::infinity();
+    bend_ = static_cast<float>(std::min(bend, static_cast<double>(std::numeric_limits<float>::max())));
+}
+
+Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality,
+                                   Statistics* out) {
+    const Stopwatch total;
+    prepare_here(scene, quality);
+    Statistics statistics;
+    statistics.ms.plan = total.ms();
+    Image image(size.width, size.height);
+    const Stopwatch drawing;
+    statistics.counts.fragments = draw(image, ScreenTransform(camera, size));
+    statistics.ms.draw = drawing.ms();
+    statistics.ms.total = total.ms();
+    if (!out) return image;
+    statistics.counts.cells = scene.grid->cell_count();
+    statistics.counts.culled = volume_->empty_cells();
+    statistics.counts.drawn = statistics.counts.cells - statistics.counts.culled;
+    statistics.method = to_string(quality.method);
+    statistics.target = to_string(quality.target);
+    statistics.table_bytes = classification_->bytes();
+    statistics.backend = "cpu";
+    const int threads = oneapi::tbb::this_task_arena::max_concurrency();
+    statistics.backend_version = instruction_set() + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+    statistics.order = "grid";  // along each ray
+    statistics.order_exact = true;
+    *out = std::move(statistics);
+    return image;
+}
+
+// Each tile by one task: the same picture for any number of threads. Returns the number of segments.
+std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform) const {
+    const GridCells cells = volume_->cells();
+    Shading shading = classification_->shading();
+    if (!classification_->may_be_opaque()) shading.opaque = 1.0F;
+    const int columns = (image.width + tile_side - 1) / tile_side, rows = (image.height + tile_side - 1) / tile_side;
+    std::atomic<std::size_t> segments = 0;
+    oneapi::tbb::parallel_for(
+        0, columns * rows,
+        [&](int index) {
+            const int x = index % columns * tile_side, y = index / columns * tile_side;
+            const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
+                            static_cast<std::size_t>(image.width)};
+            GridRays rays;
+            volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, rays);
+            segments += draw_grid_tile(cells, rays, shading, bend_, tile);
+        },
+        oneapi::tbb::simple_partitioner());
+    return segments;
+}
+
+}  // namespace
+
+std::unique_ptr<GridRenderer> make_grid_renderer(int threads) { return std::make_unique<CpuGridRenderer>(threads); }
+
+}  // namespace cellproj::cpu

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/cpu/grid_kernels.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/cpu/grid_kernels.cpp"
+// As in kernels.cpp.
+#ifdef CELLPROJ_FEW_INSTRUCTION_SETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_AVX2)
+#else
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#endif
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
+
+#include "render/cpu/segment_light-inl.hpp"
+#include "render/cpu/table_light-inl.hpp"
+#include "render/cpu/grid_segments-inl.hpp"
+#include "render/cpu/grid_walk-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace cellproj::cpu::HWY_NAMESPACE {
+
+std::size_t DrawGridTile(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
+    return !grid.axes[0].planes ? draw_grid<true>(grid, rays, shading, bend, tile) 
+                                : draw_grid<false>(grid, rays, shading, bend, tile);
+}
+
+}  // namespace cellproj::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace cellproj::cpu {
+
+HWY_EXPORT(DrawGridTile);
+
+std::size_t draw_grid_tile(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
+    assert(tile.width <= tile_side && tile.height <= tile_side);
+    return HWY_DYNAMIC_DISPATCH(DrawGridTile)(grid, rays, shading, bend, tile);
+}
+
+}  // namespace cellproj::cpu
+
+#endif

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A grid as the CPU renderer keeps it: float32 values in scene units, and a pyramid of the least and largest scalar in
+// bricks of cells, from which it follows for each transfer function what rays may leap over.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "classify/transfer_function.hpp"
+#include "project/camera.hpp"
+#include "render/cpu/grid_kernels.hpp"
+#include "render/grid_scene.hpp"
+
+namespace cellproj::cpu {
+
+class GridVolume {
+public:
+    // Throws Error (data) for more values than 32 bits count.
+    explicit GridVolume(const Grid& grid);
+
+    const GridUnits& units() const { return units_; }
+    // Mean length of a segment over all directions in a cell of the mean size, 4·volume / surface by Cauchy's formula.
+    double mean_chord() const { return mean_chord_; }
+
+    // `transfer` in scene units: finds the bricks in which nothing can be seen.
+    void set_transfer(const TransferFunction& transfer);
+    std::size_t empty_cells() const { return empty_cells_; }  // in them, or blanked
+
+    GridCells cells() const;
+    // The part of the pixels' rays inside the grid. Pixel (x, y) is the tile's first one.
+    void find_rays(const ScreenTransform& transform, int x, int y, int width, int height, GridRays& rays) const;
+
+private:
+    struct Range {
+        float low = 1, high = 0;  // low > high: no cell that is not blanked
+    };
+    struct Level {
+        std::array<std::size_t, 3> bricks;
+        std::vector<Range> ranges;
+    };
+    struct Axis {
+        double low, high, per_unit;  // ends [mesh units]; axis units per mesh unit
+        std::vector<float> planes, per_width;  // none when all axes are uniform
+    };
+
+    void find_ranges(const Grid& grid);
+
+    GridUnits units_;
+    double mean_chord_;
+    bool constant_;
+    std::array<Axis, 3> axes_;
+    std::array<std::int32_t, 3> cell_counts_, value_strides_;
+    std::vector<float> values_, present_;
+    std::array<Level, brick_levels> levels_;
+    std::vector<std::int32_t> empty_;
+    std::size_t empty_cells_ = 0;
+    bool leaps_ = false;
+};
+
+}  // namespace cellproj::cpu

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How a packet of rays walks through a grid (grid_kernels.hpp). Where a ray crosses plane i follows from i itself, not
+// from sums along the way: nothing drifts, and the next plane is never nearer than the last one. Included once per
+// instruction set, behind Highway; private to grid_kernels.cpp.
+#if defined(CELLPROJ_GRID_WALK_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef CELLPROJ_GRID_WALK_INL
+#undef CELLPROJ_GRID_WALK_INL
+#else
+#define CELLPROJ_GRID_WALK_INL
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace cellproj::cpu::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// After so many steps a packet looks at the light, and whether it may leap: small enough for the first-level cache.
+inline constexpr std::size_t steps_at_once = 12;
+// A cell is cut into at most this many lines.
+inline constexpr float most_parts = 32;
+static_assert(SegmentChunk::most >= steps_at_once + static_cast<std::size_t>(most_parts));
+
+template <bool uniform, class D>
+class GridWalk {
+public:
+    using V = hn::Vec<D>;
+    using DI = hn::RebindToSigned<D>;
+    using VI = hn::Vec<DI>;
+    using M = hn::Mask<D>;
+
+    // `pixel`: of each lane; lanes behind `count` are none.
+    HWY_INLINE GridWalk(D d, const GridCells& grid, const GridRays& rays, const std::int32_t* pixel, M some) : d_(d), grid_(grid) {
+        const VI at = hn::LoadU(di_, pixel);
+        length_ = hn::IfThenElseZero(some, hn::GatherIndex(d, rays.length.data(), at));
+        t_ = hn::Zero(d);
+        active_ = hn::Gt(length_, t_);
+        t_end_ = hn::Set(d, never);
+        for (std::size_t a = 0; a < 3; ++a) {
+            Axis& axis = axes_[a];
+            axis.origin = hn::IfThenElseZero(active_, hn::GatherIndex(d, rays.origin[a].data(), at));
+            axis.direction = hn::IfThenElseZero(active_, hn::GatherIndex(d, rays.direction[a].data(), at));
+            const M moves = hn::Ne(axis.direction, hn::Zero(d)), up = hn::Ge(axis.direction, hn::Zero(d));
+            const V one = hn::Set(d, 1.0F);
+            axis.inverse = hn::IfThenElseZero(moves, hn::Div(one, hn::IfThenElse(moves, axis.direction, one)));
+            axis.up = hn::IfThenElseZero(up, one);
+            axis.step = hn::IfThenElse(up, one, hn::Set(d, -1.0F));
+            axis.first = hn::IfThenElse(moves, uniform ? hn::Mul(hn::Sub(axis.up, axis.origin), axis.inverse) : hn::Zero(d), hn::Set(d, never));
+            const V last = hn::Set(d, static_cast<float>(grid.axes[a].cells - 1));
+            axis.cell = cell_at(a, axis.origin, hn::Zero(d), last);
+            t_end_ = hn::Min(t_end_, plane_ahead(a, hn::IfThenElseZero(up, last)));
+        }
+        find_ids();
+        if (!grid.constant) scalar_ = interpolate(t_);
+    }
+
+    HWY_INLINE bool ended() const { return hn::AllFalse(d_, active_); }
+    HWY_INLINE void keep(M still) { active_ = hn::And(active_, still); }
+    HWY_INLINE std::size_t active() const { return hn::CountTrue(d_, active_); }
+
+    // Through the cell in which the rays are, and into the next one.
+    HWY_INLINE void step(float bend, SegmentChunk& chunk) {
+        const V tx = plane_ahead(0, axes_[0].cell), ty = plane_ahead(1, axes_[1].cell), tz = plane_ahead(2, axes_[2].cell);
+        const V nearest = hn::Min(hn::Min(tx, ty), tz);
+        const M by_x = hn::Eq(nearest, tx), by_y = hn::AndNot(by_x, hn::Eq(nearest, ty));
+        const M last = hn::Ge(nearest, t_end_);
+        const V leave = hn::Max(t_, hn::IfThenElse(last, length_, nearest));
+        V length = hn::IfThenElseZero(active_, hn::Sub(leave, t_));
+        if (grid_.present) length = hn::Mul(length, hn::GatherIndex(d_, grid_.present, cell_id_));
+        if (grid_.constant) {
+            const V scalar = hn::GatherIndex(d_, grid_.values, value_id_);
+            push(scalar, scalar, length, chunk);
+        } else {
+            const V next = scalar_at_face(hn::Min(leave, nearest), by_x, by_y);
+            if (bend < std::numeric_limits<float>::max()) {
+                push_parts(next, leave, length, bend, chunk);
+            } else {
+                push(scalar_, next, length, chunk);
+            }
+            scalar_ = next;
+        }
+        t_ = leave;
+        active_ = hn::AndNot(last, active_);
+        const auto move = [&](Axis& axis, M crossed) HWY_ATTR {
+            axis.cell = hn::Add(axis.cell, hn::IfThenElseZero(hn::And(crossed, active_), axis.step));
+        };
+        const M by_z = hn::Not(hn::Or(by_x, by_y));
+        move(axes_[0], by_x);
+        move(axes_[1], by_y);
+        move(axes_[2], by_z);
+        find_ids();
+    }
+
+    // Out of bricks that show nothing.
+    HWY_NOINLINE void leap() {
+        M leapt = hn::Lt(t_, hn::Zero(d_));  // none
+        for (;;) {
+            VI brick = hn::Zero(di_);
+            for (std::size_t a = 0; a < 3; ++a)
+                brick = hn::Add(brick, hn::Mul(hn::ShiftRight<2>(hn::ConvertTo(di_, axes_[a].cell)), hn::Set(di_, grid_.axes[a].brick_stride)));
+            const VI level = hn::IfThenElseZero(hn::RebindMask(di_, active_), hn::GatherIndex(di_, grid_.empty, brick));
+            const M empty = hn::RebindMask(d_, hn::Gt(level, hn::Zero(di_)));
+            if (hn::AllFalse(d_, empty)) break;
+            leapt = hn::Or(leapt, leap_out_of(empty, hn::Add(level, level)));
+        }
+        if (hn::AllFalse(d_, leapt)) return;
+        find_ids();
+        if (!grid_.constant) scalar_ = hn::IfThenElse(leapt, interpolate(t_), scalar_);
+    }
+
+private:
+    static constexpr float never = 1e30F;  // where a plane is crossed that the ray runs along
+
+    struct Axis {
+        V origin, direction, inverse;  // of the ray, axis units; inverse 0 for one that crosses no plane
+        V first;                       // uniform: where plane `up` is crossed; otherwise 0; `never` without direction
+        V up, step;                    // 1 and 1 towards higher cells, 0 and −1 towards lower ones
+        V cell;                        // a whole number
+    };
+
+    // Where the ray crosses the plane ahead, at the end of these cells.
+    HWY_INLINE V plane_ahead(std::size_t a, V cell) const {
+        const Axis& axis = axes_[a];
+        if constexpr (uniform) return hn::MulAdd(cell, axis.inverse, axis.first);
+        const V plane = hn::GatherIndex(d_, grid_.axes[a].planes, hn::ConvertTo(di_, hn::Add(cell, axis.up)));
+        return hn::MulAdd(hn::Sub(plane, axis.origin), axis.inverse, axis.first);
+    }
+
+    // The cell at a place, among those from low to high.
+    HWY_INLINE V cell_at(std::size_t a, V place, V low, V high) const {
+        if constexpr (uniform) return hn::Min(hn::Max(hn::Floor(place), low), high);
+        VI first = hn::ConvertTo(di_, low), last = hn::ConvertTo(di_, high);
+        while (!hn::AllTrue(di_, hn::Eq(first, last))) {
+            const VI middle = hn::ShiftRight<1>(hn::Add(hn::Add(first, last), hn::Set(di_, 1)));
+            const auto below = hn::RebindMask(di_, hn::Lt(place, hn::GatherIndex(d_, grid_.axes[a].planes, middle)));
+            last = hn::IfThenElse(below, hn::Sub(middle, hn::Set(di_, 1)), last);
+            first = hn::IfThenElse(below, first, middle);
+        }
+        return hn::ConvertTo(d_, first);
+    }
+
+    // Where in its cell a ray is at t, 0..1.
+    HWY_INLINE V fraction(std::size_t a, V t) const {
+        const Axis& axis = axes_[a];
+        const V place = hn::MulAdd(t, axis.direction, axis.origin);
+        V share;
+        if constexpr (uniform) {
+            share = hn::Sub(place, axis.cell);
+        } else {
+            const VI cell = hn::ConvertTo(di_, axis.cell);
+            share = hn::Mul(hn::Sub(place, hn::GatherIndex(d_, grid_.axes[a].planes, cell)), hn::GatherIndex(d_, grid_.axes[a].per_width, cell));
+        }
+        return hn::Min(hn::Max(share, hn::Zero(d_)), hn::Set(d_, 1.0F));
+    }
+
+    HWY_INLINE void find_ids() {
+        value_id_ = hn::Zero(di_);
+        cell_id_ = hn::Zero(di_);
+        for (std::size_t a = 0; a < 3; ++a) {
+            const VI cell = hn::ConvertTo(di_, axes_[a].cell);
+            value_id_ = hn::Add(value_id_, hn::Mul(cell, hn::Set(di_, grid_.axes[a].value_stride)));
+            if (grid_.present) cell_id_ = hn::Add(cell_id_, hn::Mul(cell, hn::Set(di_, grid_.axes[a].cell_stride)));
+        }
+    }
+
+    HWY_INLINE V between(V low, V high, V share) const { return hn::MulAdd(hn::Sub(high, low), share, low); }
+    HWY_INLINE V in_range(V scalar) const { return hn::Min(hn::Max(scalar, hn::Zero(d_)), hn::Set(d_, 1.0F)); }
+
+    // The bilinear scalar on the face where the ray leaves.
+    HWY_INLINE V scalar_at_face(V t, M by_x, M by_y) const {
+        const V ux = fraction(0, t), uy = fraction(1, t), uz = fraction(2, t);
+        const auto stride = [&](std::size_t a) HWY_ATTR { return hn::Set(di_, grid_.axes[a].value_stride); };
+        const auto ix = hn::RebindMask(di_, by_x), iy = hn::RebindMask(di_, by_y);
+        const M by_z = hn::Not(hn::Or(by_x, by_y));
+        const auto iz = hn::RebindMask(di_, by_z);
+        const V up = hn::IfThenElse(by_x, axes_[0].up, hn::IfThenElse(by_y, axes_[1].up, axes_[2].up));
+        const VI across = hn::IfThenElse(ix, stride(0), hn::IfThenElse(iy, stride(1), stride(2)));
+        const VI first = hn::IfThenElse(ix, stride(1), stride(0)), second = hn::IfThenElse(iz, stride(1), stride(2));
+        const V u = hn::IfThenElse(by_x, uy, ux), v = hn::IfThenElse(by_z, uy, uz);
+        const VI corner = hn::Add(value_id_, hn::IfThenElseZero(hn::RebindMask(di_, hn::Gt(up, hn::Zero(d_))), across));
+        const VI opposite = hn::Add(corner, second);
+        const V low = between(value(corner), value(hn::Add(corner, first)), u);
+        const V high = between(value(opposite), value(hn::Add(opposite, first)), u);
+        return in_range(between(low, high, v));
+    }
+
+    HWY_INLINE V value(VI id) const { return hn::GatherIndex(d_, grid_.values, id); }
+
+    struct Corners {
+        V at[8];
+    };
+    HWY_INLINE Corners corners() const {
+        Corners result;
+        for (std::size_t c = 0; c < 8; ++c) {
+            std::int32_t offset = 0;
+            for (std::size_t a = 0; a < 3; ++a)
+                if (c >> a & 1U) offset += grid_.axes[a].value_stride;
+            result.at[c] = hn::GatherIndex(d_, grid_.values + offset, value_id_);
+        }
+        return result;
+    }
+    HWY_INLINE V interpolate(const Corners& c, V t) const {
+        const V u = fraction(0, t), v = fraction(1, t), w = fraction(2, t);
+        const V low = between(between(c.at[0], c.at[1], u), between(c.at[2], c.at[3], u), v);
+        const V high = between(between(c.at[4], c.at[5], u), between(c.at[6], c.at[7], u), v);
+        return in_range(between(low, high, w));
+    }
+    HWY_INLINE V interpolate(V t) const { return interpolate(corners(), t); }
+
+    HWY_INLINE void push(V front, V back, V length, SegmentChunk& chunk) {
+        SegmentChunk::Step& step = chunk.steps[chunk.count++];
+        hn::Store(front, d_, step.front);
+        hn::Store(back, d_, step.back);
+        hn::Store(length, d_, step.length);
+    }
+
+    // The cubic in as many equal lines as keep it within `bend`: a chord stays within M/8 of a function whose second
+    // derivative is at most M. That of a cubic is 6 times the larger second difference of its Bézier points.
+    HWY_INLINE void push_parts(V next, V leave, V length, float bend, SegmentChunk& chunk) {
+        const auto set = [&](float x) HWY_ATTR { return hn::Set(d_, x); };
+        const Corners cell = corners();
+        const V step = hn::Mul(hn::Sub(leave, t_), set(1.0F / 3));
+        const V s1 = interpolate(cell, hn::Add(t_, step)), s2 = interpolate(cell, hn::Sub(leave, step));
+        // Bézier points but for the ends, and the differences 3·(b1 − b0) … of the power form.
+        const V b1 = hn::MulAdd(scalar_, set(-5.0F / 6), hn::MulAdd(s1, set(3), hn::MulAdd(s2, set(-1.5F), hn::Mul(next, set(1.0F / 3)))));
+        const V b2 = hn::MulAdd(scalar_, set(1.0F / 3), hn::MulAdd(s1, set(-1.5F), hn::MulAdd(s2, set(3), hn::Mul(next, set(-5.0F / 6)))));
+        const V bend0 = hn::Add(hn::Sub(scalar_, hn::Add(b1, b1)), b2), bend1 = hn::Add(hn::Sub(b1, hn::Add(b2, b2)), next);
+        const V most = hn::Mul(hn::Max(hn::Abs(bend0), hn::Abs(bend1)), set(6.0F / 8));
+        const V seen = hn::IfThenElseZero(hn::Gt(length, hn::Zero(d_)), most);
+        const float wanted = std::ceil(std::sqrt(hn::GetLane(hn::MaxOfLanes(d_, seen)) / bend));
+        const float parts = std::min(std::max(wanted, 1.0F), most_parts);
+        const V per_part = set(1.0F / parts), slope = hn::Mul(set(3), hn::Sub(b1, scalar_)), square = hn::Mul(set(3), bend0);
+        const V cube = hn::Sub(bend1, bend0), part_length = hn::Mul(length, per_part);
+        V front = scalar_;
+        for (float i = 1; i < parts; ++i) {
+            const V t = hn::Mul(set(i), per_part);
+            const V back = in_range(hn::MulAdd(hn::MulAdd(hn::MulAdd(cube, t, square), t, slope), t, scalar_));
+            push(front, back, part_length, chunk);
+            front = back;
+        }
+        push(front, next, part_length, chunk);
+    }
+
+    // The lanes of `from` out of the bricks of 1 << shift cells they are in. Those that are still in the grid.
+    HWY_INLINE M leap_out_of(M from, VI shift) {
+        V low[3], high[3], ahead[3];
+        for (std::size_t a = 0; a < 3; ++a) {
+            const VI first = hn::Shl(hn::Shr(hn::ConvertTo(di_, axes_[a].cell), shift), shift);
+            const VI last = hn::Min(hn::Add(first, hn::Sub(hn::Shl(hn::Set(di_, 1), shift), hn::Set(di_, 1))), hn::Set(di_, grid_.axes[a].cells - 1));
+            low[a] = hn::ConvertTo(d_, first);
+            high[a] = hn::ConvertTo(d_, last);
+            ahead[a] = plane_ahead(a, hn::IfThenElse(hn::Gt(axes_[a].step, hn::Zero(d_)), high[a], low[a]));
+        }
+        const V nearest = hn::Min(hn::Min(ahead[0], ahead[1]), ahead[2]);
+        active_ = hn::AndNot(hn::And(from, hn::Ge(nearest, t_end_)), active_);
+        const M go = hn::And(from, active_);
+        t_ = hn::IfThenElse(go, hn::Max(t_, nearest), t_);
+        M crosses = go;  // along the first axis whose plane is the nearest
+        for (std::size_t a = 0; a < 3; ++a) {
+            Axis& axis = axes_[a];
+            const M up = hn::Gt(axis.step, hn::Zero(d_));
+            const M by = hn::And(crosses, hn::Eq(nearest, ahead[a]));
+            crosses = hn::AndNot(by, crosses);
+            // Rounding must not turn a ray round: never behind the cell where it was.
+            const V along = cell_at(a, hn::MulAdd(t_, axis.direction, axis.origin), hn::IfThenElse(up, axis.cell, low[a]),
+                                    hn::IfThenElse(up, high[a], axis.cell));
+            const V across = hn::Add(hn::IfThenElse(up, high[a], low[a]), axis.step);
+            axis.cell = hn::IfThenElse(go, hn::IfThenElse(by, across, along), axis.cell);
+        }
+        return go;
+    }
+
+    D d_;
+    DI di_;
+    const GridCells& grid_;
+    Axis axes_[3];
+    V t_, t_end_, length_, scalar_;
+    VI value_id_, cell_id_;
+    M active_;
+};
+
+// Pixels of a packet: squares, or what a vector can be.
+template <class D>
+HWY_INLINE int packet_width(D d) {
+    return static_cast<int>(hn::Lanes(d) >= 8 ? 4 : hn::Lanes(d) >= 2 ? 2 : 1);
+}
+
+template <bool uniform>
+HWY_INLINE std::size_t draw_grid(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
+    using D = hn::CappedTag<float, packet_lanes>;
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const auto lanes = static_cast<int>(hn::Lanes(d));
+    const int columns = packet_width(d), rows = lanes / columns;
+    SegmentChunk chunk;
+    CrossingSegments crossing;
+    std::size_t segments = 0;
+    for (int y = 0; y < tile.height; y += rows)
+        for (int x = 0; x < tile.width; x += columns) {
+            alignas(64) std::int32_t pixel[packet_lanes], inside[packet_lanes];
+            for (int lane = 0; lane < lanes; ++lane) {
+                const int column = x + lane % columns, row = y + lane / columns;
+                inside[lane] = column < tile.width && row < tile.height ? 1 : 0;
+                pixel[lane] = inside[lane] ? tile_side * row + column : 0;
+            }
+            const auto some = hn::RebindMask(d, hn::Gt(hn::Load(di, inside), hn::Zero(di)));
+            GridWalk<uniform, D> walk(d, grid, rays, pixel, some);
+            const auto zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+            PacketLight<D> seen{zero, zero, zero, one};
+            const auto hidden = hn::Set(d, 1.0F - shading.opaque);
+            while (!walk.ended()) {
+                if (grid.empty) walk.leap();
+                chunk.count = 0;
+                while (chunk.count < steps_at_once && !walk.ended()) {
+                    segments += walk.active();
+                    walk.step(bend, chunk);
+                }
+                light_of_chunk(d, shading, grid.constant, chunk, crossing);
+                composite(d, chunk, seen);
+                walk.keep(hn::Gt(seen.transmitted, hidden));
+            }
+            alignas(64) float rgba[4 * packet_lanes];
+            hn::StoreInterleaved4(seen.r, seen.g, seen.b, hn::Sub(one, seen.transmitted), d, rgba);
+            for (int lane = 0; lane < lanes; ++lane)
+                if (inside[lane]) {
+                    const float* light = rgba + 4 * lane;
+                    tile.pixels[static_cast<std::size_t>(y + lane / columns) * tile.stride + static_cast<std::size_t>(x + lane % columns)] = {
+                        light[0], light[1], light[2], light[3]};
+                }
+        }
+    return segments;
+}
+
+}  // namespace cellproj::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

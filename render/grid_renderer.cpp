@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/grid_renderer.hpp"
+
+#include "mesh/error.hpp"
+#include "render/cpu/cpu_grid_renderer.hpp"
+
+namespace cellproj {
+
+void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfaces) {
+    const auto refuse = [](const char* option, const char* expected, const std::string& found, const char* advice) {
+        throw Error({ErrorKind::option, option, expected, found, advice});
+    };
+    const char* as_tets = "draw the grid as tetrahedra (--as tets)";
+    if (backend != Backend::cpu) refuse("--backend", "the CPU backend for a regular grid", "gl", "use --backend cpu, or draw the grid as tetrahedra (--as tets)");
+    if (light_at_vertices(quality.method))
+        refuse("--method", "a method of light per pixel for a regular grid", to_string(quality.method), as_tets);
+    if (quality.target != TargetFormat::rgba32f) refuse("--target", "rgba32f for a regular grid", to_string(quality.target), as_tets);
+    if (surfaces) refuse("--iso", "no isosurfaces for a regular grid", "some", as_tets);
+}
+
+std::unique_ptr<GridRenderer> make_grid_renderer(Backend backend, const RendererOptions& options) {
+    require_grid_drawn(backend, {}, false);
+    return cpu::make_grid_renderer(options.threads);
+}
+
+}  // namespace cellproj
