@@ -3,15 +3,16 @@
 
 #include "mesh/error.hpp"
 #include "render/cpu/cpu_grid_renderer.hpp"
+#include "render/gl/grid_gl_renderer.hpp"
 
 namespace cellproj {
 
 void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfaces) {
+    if (backend == Backend::gl_osmesa) return gl::require_grid_drawn(quality, surfaces);
     const auto refuse = [](const char* option, const char* expected, const std::string& found, const char* advice) {
         throw Error({ErrorKind::option, option, expected, found, advice});
     };
     const char* as_tets = "draw the grid as tetrahedra (--as tets)";
-    if (backend != Backend::cpu) refuse("--backend", "the CPU backend for a regular grid", "gl", "use --backend cpu, or draw the grid as tetrahedra (--as tets)");
     if (light_at_vertices(quality.method))
         refuse("--method", "a method of light per pixel for a regular grid", to_string(quality.method), as_tets);
     if (quality.target != TargetFormat::rgba32f) refuse("--target", "rgba32f for a regular grid", to_string(quality.target), as_tets);
@@ -19,7 +20,7 @@ void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfac
 }
 
 std::unique_ptr<GridRenderer> make_grid_renderer(Backend backend, const RendererOptions& options) {
-    require_grid_drawn(backend, {}, false);
+    if (backend == Backend::gl_osmesa) return std::make_unique<gl::GlGridRenderer>(gl::OsmesaContext(options.osmesa_library));
     return cpu::make_grid_renderer(options.threads);
 }
 

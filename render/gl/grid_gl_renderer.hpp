@@ -37,7 +37,7 @@ private:
 
     OsmesaContext context_;
     std::map<std::string, Program> programs_;  // by their text
-    TriangleStream indices_;
+    TriangleStream indices_, pairs_;
     Target target_;
     GridScene scene_;
     std::optional<GridVolume> volume_;

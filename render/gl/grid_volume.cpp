@@ -75,14 +75,4 @@ void GridVolume::set_transfer(const Grid& grid, const TransferFunction& transfer
     });
 }
 
-std::vector<float> planes_about(const Grid& grid, const glm::dvec3& reference, double length) {
-    std::vector<float> planes;
-    for (int a = 0; a < 3; ++a) {
-        for (const double x : grid.axes[static_cast<std::size_t>(a)].coordinates)
-            planes.push_back(static_cast<float>((x - reference[a]) / length));
-    }
-    planes.resize((planes.size() + 3) / 4 * 4);
-    return planes;
-}
-
 }  // namespace cellproj::gl

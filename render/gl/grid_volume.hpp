@@ -36,7 +36,4 @@ private:
     std::vector<std::uint8_t> drawn_;
 };
 
-// The planes of all axes about a point, [GridUnits::length], as texels of four.
-std::vector<float> planes_about(const Grid& grid, const glm::dvec3& reference, double length);
-
 }  // namespace cellproj::gl
