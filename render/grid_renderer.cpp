@@ -16,6 +16,8 @@ void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfac
     if (light_at_vertices(quality.method))
         refuse("--method", "a method of light per pixel for a regular grid", to_string(quality.method), as_tets);
     if (quality.target != TargetFormat::rgba32f) refuse("--target", "rgba32f for a regular grid", to_string(quality.target), as_tets);
+    if (quality.sampling.cut != GridSampling::Cut::cells)
+        refuse("--sampling", "cells for a regular grid on the CPU", to_string(quality.sampling), "use the OpenGL backend (--backend gl)");
     if (surfaces) refuse("--iso", "no isosurfaces for a regular grid", "some", as_tets);
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Regular grids in OpenGL: what WVG91's Table 3 asks, and what coherence pays.
+// Regular grids in OpenGL: what coherence pays, the ways to classify slabs, and WVG91's Table 3.
 //
 //   cellproj_grid_templates [SIDE [FRAMES]]     default: 512 3
 //
-// First every way to integrate and interpolate on three volumes (a distance field of 20³ cells, the blunt fin's density resampled to
-// 40×32×32, a curved field of 100³), from the front, closer, and turned by 30° about two axes, SIDE² pixels. Then a cube of 64³ cells by
-// its own cells and as tetrahedra, by the same backend and method. Median user CPU time of all threads over FRAMES pictures, after one that is
+// First EKE01's Fig. 9 and 10 in numbers, several slabs a polygon as RS00 draws them, and a cube of 64³ cells by its own cells and as
+// tetrahedra, by the same backend and method. Then every way to integrate and interpolate on three volumes (a distance field of 20³
+// cells, the blunt fin's density resampled to 40×32×32, a curved field of 100³), from the front, closer, and turned by 30° about two axes,
+// SIDE² pixels. Median user CPU time of all threads over FRAMES pictures, after one that is
 // not counted; errors of RGB against GridReference at every 61st pixel.
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -34,6 +36,7 @@
 #include "render/renderer.hpp"
 #include "tests/support/grids.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/spherical_harmonic.hpp"
 
 namespace {
 
@@ -49,6 +52,14 @@ double median_ms(int frames, const std::function<void()>& draw) {
         times.push_back(bench::user_ms() - before);
     }
     return median(times);
+}
+
+std::vector<PixelId> some_pixels(ImageSize size) {
+    std::vector<PixelId> pixels = all_pixels(size);
+    std::size_t kept = 0;
+    for (std::size_t i = 30; i < pixels.size(); i += 61) pixels[kept++] = pixels[i];
+    pixels.resize(kept);
+    return pixels;
 }
 
 // ---- The volumes ----
@@ -141,10 +152,7 @@ const std::vector<std::vector<const char*>> methods{
     {"average", "average:half", "homogeneous", "linear:4", "stein", "preint2d:256", "preint2d-exp:256", "preint3d:64", "integral"}};
 
 void table(GridRenderer& renderer, const Volume& volume, ImageSize size, int frames) {
-    std::vector<PixelId> pixels = all_pixels(size);
-    std::size_t kept = 0;
-    for (std::size_t i = 30; i < pixels.size(); i += 61) pixels[kept++] = pixels[i];
-    pixels.resize(kept);
+    const std::vector<PixelId> pixels = some_pixels(size);
     for (const View& view : views) {
         const Camera cameras[] = {camera_of(view, volume.scene.grid->bounds(), Projection::parallel),
                                   camera_of(view, volume.scene.grid->bounds(), Projection::perspective)};
@@ -188,6 +196,40 @@ void coherence(GridRenderer& cells, ImageSize size, int frames) {
     }
 }
 
+// ---- EKE01 Fig. 9 and 10, RS00 ----
+
+void classifications(GridRenderer& renderer, ImageSize size) {
+    const GridScene scene = testing_support::with_random_transfer(testing_support::spherical_harmonic(16), 65, 1.5, 512);
+    const Camera camera = frame_bounds(scene.grid->bounds(), Projection::parallel, {0.2, -1, 0.1}, {0, 0, 1}, 1.0);
+    const std::vector<PixelId> pixels = some_pixels(size);
+    const std::vector<PixelTruth> truths = GridReference(scene.grid, scene.transfer).pixels(camera, size, pixels);
+    std::printf("spherical harmonic, 16^3 points, random transfer function\n  %-16s %-18s %9s %9s\n", "", "", "RMS", "max");
+    for (const auto& [sampling, method] : std::vector<std::pair<const char*, const char*>>{
+             {"object:15:pre", "integral"}, {"object:15:post", "integral"}, {"object:60:post", "integral"}, {"object:240:post", "integral"},
+             {"object:15", "preint2d:256"}, {"object:15", "preint2d-exp:256"}, {"object:15", "integral"}, {"object:60", "integral"},
+             {"view:26", "integral"}, {"cells", "integral"}}) {
+        const ErrorMeasure error =
+            compare(renderer.render(scene, camera, size, {.method = parse_method(method), .sampling = parse_grid_sampling(sampling)}), truths).color;
+        std::printf("  %-16s %-18s %9.1e %9.1e\n", sampling, method, error.rms, error.maximum);
+    }
+    std::fflush(stdout);
+}
+
+void several_a_polygon(GridRenderer& renderer, ImageSize size, int frames) {
+    const GridScene scene{std::make_shared<Grid>(testing_support::unit_cube(64, scenes::waves)), std::make_shared<TransferFunction>(scenes::ramp())};
+    const Camera camera = scenes::measured_view(0, {glm::dvec3(0), glm::dvec3(1)}, Projection::parallel);
+    std::printf("64^3 cells, 128 slabs, preint2d:256, slabs a polygon\n  %-16s %9s %9s %9s %9s\n", "", "1", "2", "4", "1 : 2");
+    for (const std::string sampling : {"object:128", "object:128:post", "object:128:pre", "view:128"}) {
+        double ms[3];
+        for (int i = 0; i < 3; ++i) {
+            const GridQuality quality{.method = parse_method("preint2d:256"), .sampling = parse_grid_sampling(sampling + ":x" + std::to_string(1 << i))};
+            ms[i] = median_ms(frames, [&] { renderer.render(scene, camera, size, quality); });
+        }
+        std::printf("  %-16s %9.1f %9.1f %9.1f %9.2f\n", sampling.c_str(), ms[0], ms[1], ms[2], ms[0] / ms[1]);
+        std::fflush(stdout);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -196,6 +238,8 @@ int main(int argc, char** argv) {
         const int side = number(1, 512), frames = number(2, 3);
         if (side < 1 || side > 16384 || frames < 1) throw std::invalid_argument("SIDE and FRAMES are numbers above 0");
         const auto renderer = make_grid_renderer(Backend::gl_osmesa);
+        classifications(*renderer, {side, side});
+        several_a_polygon(*renderer, {side, side}, frames);
         coherence(*renderer, {side, side}, frames);
         for (const Volume& volume : volumes()) table(*renderer, volume, {side, side}, frames);
         return 0;

@@ -28,7 +28,7 @@ double largest_point() {
 const Program& make_ready(const GridView& view, const SegmentShader& shader, const MakeProgram& make_program,
                           const std::string& defines) {
     const Program& program = make_program(shaders::grid_place_vert + shaders::grid_cell_vert + shader.vertex_source(),
-                                          shaders::grid_cell_frag + shaders::light_glsl + shader.source(), view.defines() + defines);
+                                          shaders::grid_rays_frag + shaders::grid_cell_frag + shaders::light_glsl + shader.source(), view.defines() + defines);
     view.set_place(program);
     view.set_rays(program);
     shader.bind(program);

@@ -3,12 +3,15 @@
 
 #include <glad/gl.h>
 
+#include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "classify/segment_method.hpp"
 #include "mesh/error.hpp"
 #include "render/gl/grid_footprints.hpp"
+#include "render/gl/grid_slabs.hpp"
 #include "render/gl/grid_templates.hpp"
 #include "render/gl/grid_traversal.hpp"
 #include "render/gl/grid_view.hpp"
@@ -30,6 +33,20 @@ OsmesaContext current(OsmesaContext context) {
     return context;
 }
 
+const char* blending_define(const Method& method) { return method.blending == Blending::half ? "#define HALF_OPACITY\n" : ""; }
+
+// What of a grid slices can show: a texture interpolates values on points, evenly spaced, all of them there.
+void require_sliced(const Grid& grid, const GridSampling& sampling) {
+    const auto refuse = [&](const char* expected, const char* found) {
+        throw Error({ErrorKind::option, "--sampling", std::string(expected) + " for " + to_string(sampling), found, "use cells"});
+    };
+    if (grid.location != FieldLocation::points) refuse("values on points", "values on cells");
+    if (!grid.blanked.empty()) refuse("a grid without blanked cells", "some");
+    for (const GridAxis& axis : grid.axes) {
+        if (!axis.spacing) refuse("uniform axes", "a rectilinear grid");
+    }
+}
+
 }  // namespace
 
 void require_grid_drawn(const GridQuality& quality, bool surfaces) {
@@ -45,16 +62,20 @@ void require_grid_drawn(const GridQuality& quality, bool surfaces) {
     if (quality.method.kind == MethodKind::shirley_tuchman)
         refuse("--method", "one that OpenGL draws for a regular grid", to_string(quality.method),
                "use homogeneous:vertices, or draw the grid as tetrahedra (--as tets)");
+    if (quality.sampling.cut != GridSampling::Cut::cells && light_at_vertices(quality.method))
+        refuse("--method", "a method of light per pixel for slabs", to_string(quality.method), "use cells (--sampling cells)");
 }
 
 GlGridRenderer::GlGridRenderer(OsmesaContext context) : context_(current(std::move(context))), 
       indices_(0, {}),
-      pairs_(make_triangle_stream<TemplatePair>()) {}
+      pairs_(make_triangle_stream<TemplatePair>()),
+      slabs_(make_triangle_stream<SlabVertex>()) {}
 
 GlGridRenderer::~GlGridRenderer() { context_.make_current(); }
 
 void GlGridRenderer::prepare(const GridScene& scene, const GridQuality& quality) {
     gl::require_grid_drawn(quality, has_surfaces(scene));
+    if (quality.sampling.cut != GridSampling::Cut::cells) require_sliced(*scene.grid, quality.sampling);
     context_.make_current();
     const bool same_grid = volume_ && scene_.grid == scene.grid;
     const bool same_transfer = same_grid && scene_.transfer == scene.transfer;
@@ -67,20 +88,32 @@ void GlGridRenderer::prepare(const GridScene& scene, const GridQuality& quality)
         volume_->set_transfer(*scene.grid, *scene.transfer);
     }
     scene_ = scene;
-    if (!same_transfer || !shader_ || method_ != quality.method) prepare_light(quality, same_grid);
+    const bool same_light = quality_.method == quality.method && quality_.sampling == quality.sampling;
+    if (!same_transfer || !shader_ || !same_light) prepare_light(quality, same_grid);
+}
+
+// What most segments are like; of slabs, all that look along their normal.
+double GlGridRenderer::typical_length(const GridSampling& sampling) const {
+    if (sampling.cut == GridSampling::Cut::cells) return volume_->mean_chord();
+    double length = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        length = std::max(length, slab_thickness(*scene_.grid, volume_->units(), sampling, axis));
+    return length;
 }
 
 void GlGridRenderer::prepare_light(const GridQuality& quality, bool same_grid) {
     const GridUnits& units = volume_->units();
     const TransferFunction transfer = in_scene_units(*scene_.transfer, units.scalar_low, units.scalar_high, units.length);
     auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
-    const bool keeps = shader && same_grid && method_ == quality.method;
+    classified_ = {};
+    const bool keeps = shader && same_grid && quality_.method == quality.method && quality_.sampling == quality.sampling;
     if (!keeps || !shader->update(transfer)) {
         shader.reset();  // its memory first
-        shader = make_segment_shader(quality.method, transfer, FieldsRead::one, longest_segment, volume_->mean_chord());
+        shader = make_segment_shader(quality.method, transfer, FieldsRead::one, longest_segment, typical_length(quality.sampling));
     }
+    if (quality.sampling.light == GridSampling::Light::pre) classified_ = volume_->classified(*scene_.grid, transfer);
     shader_ = std::move(shader);
-    method_ = quality.method;
+    quality_ = quality;
 }
 
 const Program& GlGridRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
@@ -105,7 +138,10 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     glEnable(GL_BLEND);
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    draw_cells(camera, size, statistics);
+    const GridView view(*scene.grid, volume_->units(), camera, size);
+    volume_->values().bind(values_unit);
+    const bool cells = quality.sampling.cut == GridSampling::Cut::cells;
+    cells ? draw_cells(view, camera, statistics) : draw_slabs(view, statistics);
 
     const Stopwatch read_back;
     Image image = target_.read();
@@ -120,21 +156,19 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     statistics.table_bytes = shader_->table_bytes();
     statistics.backend = "gl_osmesa";
     statistics.backend_version = driver_version();
-    statistics.order = "slices";
+    statistics.order = cells ? "slices" : to_string(quality.sampling);
     statistics.order_exact = true;
     *out = std::move(statistics);
     return image;
 }
 
-void GlGridRenderer::draw_cells(const Camera& camera, ImageSize size, Statistics& statistics) {
-    const GridUnits& units = volume_->units();
-    const GridView view(*scene_.grid, units, camera, size);
-    volume_->values().bind(values_unit);
+void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, Statistics& statistics) {
     const MakeProgram make_program = [this](const auto&... texts) -> const Program& { return program(texts...); };
-    const std::string blending = method_.blending == Blending::half ? "#define HALF_OPACITY\n" : "";
+    const std::string blending = blending_define(quality_.method);
     GridFootprints footprints(view, *shader_, make_program, blending, indices_);
     std::optional<GridTemplates> templates;
-    if (light_at_vertices(method_)) templates.emplace(view, units, *shader_, make_program, blending, footprints, indices_, pairs_);
+    if (light_at_vertices(quality_.method))
+        templates.emplace(view, volume_->units(), *shader_, make_program, blending, footprints, indices_, pairs_);
 
     GridTraversal traversal(*scene_.grid, camera.viewpoint(), volume_->drawn());
     std::vector<std::uint32_t> cells;
@@ -151,6 +185,16 @@ void GlGridRenderer::draw_cells(const Camera& camera, ImageSize size, Statistics
     const Stopwatch finish;
     glFinish();
     statistics.ms.draw += finish.ms();
+}
+
+void GlGridRenderer::draw_slabs(const GridView& view, Statistics& statistics) {
+    const Stopwatch drawing;
+    const MakeProgram make_program = [this](const auto&... texts) -> const Program& { return program(texts...); };
+    statistics.counts.triangles = gl::draw_slabs(view, volume_->units(), quality_.sampling, *shader_, classified_, make_program,
+                                                 blending_define(quality_.method), slabs_);
+    statistics.counts.drawn = scene_.grid->cell_count();
+    glFinish();
+    statistics.ms.draw = drawing.ms();
 }
 
 }  // namespace cellproj::gl

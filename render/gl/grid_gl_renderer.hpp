@@ -9,6 +9,7 @@
 #include <string>
 
 #include "project/camera.hpp"
+#include "render/gl/grid_view.hpp"
 #include "render/gl/grid_volume.hpp"
 #include "render/gl/objects.hpp"
 #include "render/gl/osmesa_context.hpp"
@@ -32,17 +33,21 @@ public:
 
 private:
     void prepare_light(const GridQuality& quality, bool same_grid);
+    double typical_length(const GridSampling& sampling) const;
     const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
-    void draw_cells(const Camera& camera, ImageSize size, Statistics& statistics);
+    void draw_cells(const GridView& view, const Camera& camera, Statistics& statistics);
+    void draw_slabs(const GridView& view, Statistics& statistics);
 
     OsmesaContext context_;
     std::map<std::string, Program> programs_;  // by their text
-    TriangleStream indices_, pairs_;
+    TriangleStream indices_, pairs_, slabs_;
     Target target_;
     GridScene scene_;
     std::optional<GridVolume> volume_;
-    Method method_;
-    std::unique_ptr<SegmentShader> shader_;  // of method_, for the prepared scene
+    GridQuality quality_;
+    // Of quality_, for the prepared scene.
+    std::unique_ptr<SegmentShader> shader_;
+    Texture classified_;  // where points are classified
 };
 
 }  // namespace cellproj::gl

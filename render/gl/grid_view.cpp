@@ -39,12 +39,14 @@ GridView::GridView(const Grid& grid, const GridUnits& units, const Camera& camer
       transform_(relative_transform(camera, size, units.length)),
       axes_{transform_.to_eye({1, 0, 0}), transform_.to_eye({0, 1, 0}), transform_.to_eye({0, 0, 1})},
       center_(perspective() ? transform_.principal_point()
-                            : transform_.to_screen(transform_.to_eye((reference_ - eye_) / length_))),
+                            : transform_.to_screen(to_eye(glm::dvec3(0.0)))),
       planes_(upload_planes(*this)) {}
 
 double GridView::plane(std::size_t axis, std::size_t i) const {
     return (grid_.axes[axis].coordinates[i] - reference_[static_cast<int>(axis)]) / length_;
 }
+
+glm::dvec3 GridView::to_eye(const glm::dvec3& place) const { return transform_.to_eye(place + (reference_ - eye_) / length_); }
 
 Bounds GridView::box_about_eye(const GridCell& cell) const {
     const Bounds box = grid_.cell_bounds(cell);
@@ -57,17 +59,22 @@ std::string GridView::defines() const {
 }
 
 void GridView::set_place(const Program& program) const {
-    const auto& [x, y, z] = axes_;
-    program.set("ray_center", static_cast<float>(center_.x), static_cast<float>(center_.y));
-    program.set("pixels_per_unit", static_cast<float>(transform_.pixels_per_unit()));
-    program.set("axis_right", glm::vec3(x.x, y.x, z.x));
-    program.set("axis_down", glm::vec3(x.y, y.y, z.y));
+    set_screen(program);
     program.set("picture", static_cast<float>(transform_.size().width), static_cast<float>(transform_.size().height));
     program.set("grid_cells", glm::vec3(grid_.axes[0].cells(), grid_.axes[1].cells(), grid_.axes[2].cells()));
     planes_.bind(planes_unit);
 }
 
+void GridView::set_screen(const Program& program) const {
+    const auto& [x, y, z] = axes_;
+    program.set("ray_center", static_cast<float>(center_.x), static_cast<float>(center_.y));
+    program.set("pixels_per_unit", static_cast<float>(transform_.pixels_per_unit()));
+    program.set("axis_right", glm::vec3(x.x, y.x, z.x));
+    program.set("axis_down", glm::vec3(x.y, y.y, z.y));
+}
+
 void GridView::set_rays(const Program& program) const {
+    set_screen(program);
     const glm::dvec3 forward(axes_[0].z, axes_[1].z, axes_[2].z);
     program.set("axis_forward", glm::vec3(forward));
     if (perspective()) return;

@@ -30,15 +30,19 @@ public:
     const std::array<glm::dvec3, 3>& axes() const { return axes_; }
     // Plane i of an axis, about the reference point or about the eye [scene units].
     double plane(std::size_t axis, std::size_t i) const;
+    // Of a place about the reference point.
+    glm::dvec3 to_eye(const glm::dvec3& place) const;
     Bounds box_about_eye(const GridCell& cell) const;
 
     // For a program with shaders/grid_place.vert: sets what that asks, and binds the planes.
     std::string defines() const;
     void set_place(const Program& program) const;
-    // For a program with shaders/grid_cell.frag, too.
+    // For a program with shaders/grid_rays.frag.
     void set_rays(const Program& program) const;
 
 private:
+    void set_screen(const Program& program) const;
+
     const Grid& grid_;
     double length_;
     glm::dvec3 eye_, reference_;  // mesh units

@@ -61,6 +61,18 @@ GridVolume::GridVolume(const GridScene& scene)
     set_transfer(*scene.grid, *scene.transfer);
 }
 
+Texture GridVolume::classified(const Grid& grid, const TransferFunction& transfer) const {
+    const GridDimensions n = grid.dimensions();
+    std::vector<float> texels(4 * grid.values.size());
+    for_all(grid.values.size(), 4096, [&](std::size_t i) {
+        const double s = std::clamp(units_.normalized(grid.values[i]), 0.0, 1.0);
+        const glm::dvec3 emission = transfer.emission(s);
+        for (int channel = 0; channel < 3; ++channel) texels[4 * i + static_cast<std::size_t>(channel)] = static_cast<float>(emission[channel]);
+        texels[4 * i + 3] = static_cast<float>(transfer.extinction(s));
+    });
+    return Texture::volume({n.ni, n.nj, n.nk}, texels);
+}
+
 void GridVolume::set_transfer(const Grid& grid, const TransferFunction& transfer) {
     drawn_.assign(grid.cell_count(), 0);
     const std::size_t nx = grid.axes[0].cells(), ny = grid.axes[1].cells();

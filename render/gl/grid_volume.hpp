@@ -26,6 +26,9 @@ public:
     // 4·volume / surface of a cell by Cauchy's formula, in the mean over all [GridUnits::length], > 0.
     double mean_chord() const { return mean_chord_; }
 
+    // Emission and extinction at the points, for slabs that interpolate them; of a function in scene units.
+    Texture classified(const Grid& grid, const TransferFunction& transfer) const;
+
     // Another function over the same grid.
     void set_transfer(const Grid& grid, const TransferFunction& transfer);
 

@@ -61,7 +61,8 @@ Texture Texture::table_3d(int size, TableStorage storage, std::span<const float>
 }
 
 Texture Texture::volume(std::array<std::size_t, 3> size, std::span<const float> texels) {
-    assert(texels.size() == size[0] * size[1] * size[2]);
+    const std::size_t components = texels.size() / (size[0] * size[1] * size[2]);
+    assert(texels.size() == components * size[0] * size[1] * size[2] && (components == 1 || components == 4));
     GLint largest = 0;
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
     const std::size_t longest = std::max({size[0], size[1], size[2]});
@@ -73,10 +74,8 @@ Texture Texture::volume(std::array<std::size_t, 3> size, std::span<const float> 
     Texture texture;
     texture.texture_ = Object<delete_texture>(name);
     const auto extent = [&](std::size_t axis) { return static_cast<GLsizei>(size[axis]); };
-    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTextureStorage3D(name, 1, GL_R32F, extent(0), extent(1), extent(2));
-    glTextureSubImage3D(name, 0, 0, 0, 0, extent(0), extent(1), extent(2), GL_RED, GL_FLOAT, texels.data());
+    glTextureStorage3D(name, 1, components == 1 ? GL_R32F : GL_RGBA32F, extent(0), extent(1), extent(2));
+    glTextureSubImage3D(name, 0, 0, 0, 0, extent(0), extent(1), extent(2), components == 1 ? GL_RED : GL_RGBA, GL_FLOAT, texels.data());
     texture.bytes_ = texels.size_bytes();
     check_errors("uploading a volume");
     return texture;
