@@ -45,6 +45,7 @@ Json picture_json(const Statistics& picture) {
               {"cycles", counts.cycles},
               {"split_cells", counts.split_cells},
               {"order_violations", counts.order_violations}}},
+            {"drawn_as", picture.drawn_as},
             {"method", picture.method},
             {"target", picture.target},
             {"table_bytes", picture.table_bytes},

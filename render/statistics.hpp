@@ -46,6 +46,7 @@ struct Statistics {
         std::size_t split_cells = 0;       // cells drawn as pieces, to get out of them
         std::size_t order_violations = 0;  // pairs of face neighbours drawn the wrong way round
     } counts;
+    std::string drawn_as = "tetrahedra";  // or "grid": the boxes of a regular grid as they are
     std::string method;           // of integration: "preint3d:64"
     std::string target;           // format of the framebuffer: "rgba32f"
     std::size_t table_bytes = 0;  // memory of its tables

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <random>
 #include <vector>
@@ -16,6 +15,7 @@
 
 #include "mesh/error.hpp"
 #include "render/ray_light.hpp"
+#include "tests/support/grids.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -23,23 +23,9 @@ namespace cellproj {
 namespace {
 
 using testing_support::constant_medium;
+using testing_support::grid_of;
+using testing_support::unit_cube;
 using Ray = ScreenTransform::Ray;
-
-Grid grid_of(std::array<GridAxis, 3> axes, const std::function<double(const glm::dvec3&)>& f) {
-    Grid grid{std::move(axes), FieldLocation::points, {}, {}};
-    for (const double z : grid.axes[2].coordinates) {
-        for (const double y : grid.axes[1].coordinates) {
-            for (const double x : grid.axes[0].coordinates)
-                grid.values.push_back(f({x, y, z}));
-        }
-    }
-    return grid;
-}
-
-Grid unit_cube(std::size_t n, const std::function<double(const glm::dvec3&)>& f) {
-    const GridAxis axis = uniform_axis(0, 1.0 / static_cast<double>(n), n + 1);
-    return grid_of({axis, axis, axis}, f);
-}
 
 GridReference judge(Grid grid, TransferFunction transfer) {
     return {std::make_shared<Grid>(std::move(grid)), std::make_shared<TransferFunction>(std::move(transfer))};

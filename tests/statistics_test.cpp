@@ -22,6 +22,7 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
     picture.ms = {.plan = 1, .sort = 2, .project = 3, .draw = 4, .read_back = 5, .total = 6, .write = 7};
     picture.counts = {.cells = 11, .culled = 12, .drawn = 13, .triangles = 14, .fragments = 22, .unordered = 15, .cycles = 17,
                       .split_cells = 18, .order_violations = 16};
+    picture.drawn_as = "grid";
     picture.method = "preint3d:64";
     picture.target = "rgba16f";
     picture.table_bytes = 4194304;
@@ -39,7 +40,7 @@ TEST(Statistics, EveryNumberStandsUnderItsKey) {
             "ms": {"plan": 1.0, "sort": 2.0, "project": 3.0, "draw": 4.0, "read_back": 5.0, "total": 6.0, "write": 7.0},
             "counts": {"cells": 11, "culled": 12, "drawn": 13, "triangles": 14, "fragments": 22, "unordered": 15, "cycles": 17, "split_cells": 18,
                        "order_violations": 16},
-            "method": "preint3d:64", "target": "rgba16f", "table_bytes": 4194304,
+            "drawn_as": "grid", "method": "preint3d:64", "target": "rgba16f", "table_bytes": 4194304,
             "backend": "gl_osmesa", "backend_version": "4.5 (Core Profile)",
             "order": "mpvo", "order_exact": true, "order_check": {"rays": 19, "wrong_rays": 20, "wrong_pairs": 21},
             "error": 0.25}],
@@ -74,6 +75,7 @@ TEST(Statistics, KeysStandInTheOrderOfTheDesign) {
                             "cycles",
                             "split_cells",
                             "order_violations",
+                            "drawn_as",
                             "method",
                             "target",
                             "backend",

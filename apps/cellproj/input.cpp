@@ -137,7 +137,7 @@ CLI::Validator finite_number() {
             "FINITE"};
 }
 
-Input load(const InputOptions& options) {
+Input load(const InputOptions& options, DrawnAs drawn_as) {
     const std::string demo = "demo:";
     if (options.file == "demo:sphere") return load_sphere_flow();
     if (options.file.starts_with(demo)) {
@@ -156,17 +156,30 @@ Input load(const InputOptions& options) {
     }();
     input.read_ms = reading.ms();
 
-    const Stopwatch splitting;
-    const Progress progress("splitting cells");
-    if (options.number_cells) dataset.cell_fields.push_back({"", 1, counted(dataset.cell_count())});
-    auto mesh = std::make_shared<TetMesh>(tetrahedralize(dataset, &input.report));
-    if (options.number_cells) {
-        input.file_cells = std::move(mesh->cell_fields.back().values);
-        mesh->cell_fields.pop_back();
-    }
-    input.mesh = std::move(mesh);
-    input.tetrahedralize_ms = splitting.ms();
     input.cells = cells_in_words(dataset);
+    if (drawn_as == DrawnAs::grid || (drawn_as == DrawnAs::automatic && dataset.boxes)) {
+        auto mesh = std::make_shared<TetMesh>();
+        mesh->points = std::move(dataset.points);
+        mesh->point_fields = std::move(dataset.point_fields);
+        mesh->cell_fields = std::move(dataset.cell_fields);
+        input.mesh = std::move(mesh);
+        input.regular.emplace();
+        input.regular->source = dataset.source;
+        input.regular->format = dataset.format;
+        input.regular->grid = dataset.grid;
+        input.regular->boxes = std::move(dataset.boxes);
+    } else {
+        const Stopwatch splitting;
+        const Progress progress("splitting cells");
+        if (options.number_cells) dataset.cell_fields.push_back({"", 1, counted(dataset.cell_count())});
+        auto mesh = std::make_shared<TetMesh>(tetrahedralize(dataset, &input.report));
+        if (options.number_cells) {
+            input.file_cells = std::move(mesh->cell_fields.back().values);
+            mesh->cell_fields.pop_back();
+        }
+        input.mesh = std::move(mesh);
+        input.tetrahedralize_ms = splitting.ms();
+    }
     input.format = dataset.format;
     input.grid = dataset.grid;
     input.skipped_cells = dataset.skipped_cells;

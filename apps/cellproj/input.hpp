@@ -46,9 +46,17 @@ std::string quoted(const std::string& word);
 // Refuses NaN and infinity, which CLI11 takes for numbers.
 CLI::Validator finite_number();
 
+// How a regular grid is drawn.
+enum class DrawnAs {
+    automatic,  // as it is, where a file holds one
+    grid,       // as it is; other files are refused
+    tets        // cut into tetrahedra
+};
+
 struct Input {
     std::string name;                       // for messages
     std::shared_ptr<const TetMesh> mesh;
+    std::optional<Dataset> regular;         // of a grid that is not cut: its axes; the mesh then has its points and fields, no cells
     TetrahedralizeReport report;
     std::string cells;                      // in words: "37479 hexahedra"
     std::string format;                     // in words
@@ -65,6 +73,6 @@ struct Input {
 };
 
 // Throws Error as `read`, `tetrahedralize` and the mesher do.
-Input load(const InputOptions& options);
+Input load(const InputOptions& options, DrawnAs drawn_as = DrawnAs::tets);
 
 }  // namespace cellproj::cli

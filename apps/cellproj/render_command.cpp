@@ -11,6 +11,7 @@
 
 #include "annotation_options.hpp"
 #include "commands.hpp"
+#include "grid_options.hpp"
 #include "mesh/error.hpp"
 #include "progress.hpp"
 #include "render/output_file.hpp"
@@ -113,8 +114,8 @@ void print_proof(const Statistics& s) {
 
 void print_line(const std::filesystem::path& file, const Statistics& s) {
     const bool by_triangles = s.counts.triangles > 0;
-    std::printf("%s: %zu of %zu cells, %zu %s, %.0f ms (sort %.0f, project %.0f, draw %.0f) by %s\n", file.c_str(), s.counts.drawn,
-                s.counts.cells, by_triangles ? s.counts.triangles : s.counts.fragments, by_triangles ? "triangles" : "fragments",
+    std::printf("%s: %zu of %zu %s, %zu %s, %.0f ms (sort %.0f, project %.0f, draw %.0f) by %s\n", file.c_str(), s.counts.drawn,
+                s.counts.cells, s.drawn_as == "grid" ? "cells of the grid" : "cells", by_triangles ? s.counts.triangles : s.counts.fragments, by_triangles ? "triangles" : "fragments",
                 s.ms.total, s.ms.sort, s.ms.project, s.ms.draw, s.backend.c_str());
 }
 
@@ -177,13 +178,18 @@ void render_pictures(const RenderOptions& options) {
                     .order_per_pixel = options.order == "pixel",
                     .check_rays = options.verify_order ? rays_of_proof : 0};
     const FieldsRead fields = options.scene.fields();
+    const Backend grid_backend = chosen_backend(options.backend).value_or(Backend::cpu);
+    const DrawnAs drawn_as =
+        choose_drawn_as(options.scene, {grid_backend, quality, options.max_error.has_value(), options.order != "auto"});
     const Backend backend = chosen_backend(options.backend).value_or(usual_backend(quality, fields));
-    require_drawn(backend, quality, fields);
+    if (drawn_as != DrawnAs::grid) require_drawn(backend, quality, fields);
     require_writable_image(options.output);
     const std::shared_ptr<const Font> font = require_annotated(options.annotations, options.output, size);
     if (!options.stats.empty()) require_writable(options.stats);
 
-    const auto [input, scene] = load_scene(options.scene);
+    const LoadedScene loaded = load_scene(options.scene, drawn_as);
+    const Input& input = loaded.input;
+    const Scene& scene = loaded.scene;
     const std::vector<Camera> cameras = cameras_of_pictures(options, input, size);
     const Annotator annotator = make_annotator(options.annotations, options.scene, scene, size, options.background, font);
     const ImageSize view = annotator.view_size();  // what annotations leave to the volume
@@ -193,21 +199,25 @@ void render_pictures(const RenderOptions& options) {
     RunStatistics run;
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
-    const auto renderer = make_renderer(backend, {.threads = options.threads});
+    const auto renderer = loaded.grid ? nullptr : make_renderer(backend, {.threads = options.threads});
+    const auto grid_renderer = loaded.grid ? make_grid_renderer(grid_backend, {.threads = options.threads}) : nullptr;
+    const GridQuality grid_quality{quality.method, quality.target};
     std::optional<double> error;  // of the first view
-    if (options.max_error)
+    if (options.max_error && renderer)
         quality = choose_measured(*renderer, backend, scene, views, view, *options.max_error, quality, error.emplace());
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
-        renderer->prepare(scene, quality);
+        if (loaded.grid) grid_renderer->prepare(*loaded.grid, grid_quality);
+        else renderer->prepare(scene, quality);
     }
     run.once_ms.prepare = preparing.ms();
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         const std::filesystem::path file = numbered(options.output, i, cameras.size());
         const Progress progress("rendering " + file.string());
         Statistics statistics;
-        Image image = renderer->render(scene, views[i], view, quality, &statistics);
+        Image image = loaded.grid ? grid_renderer->render(*loaded.grid, views[i], view, grid_quality, &statistics)
+                                  : renderer->render(scene, views[i], view, quality, &statistics);
         if (i == 0) statistics.error = error;
         const Stopwatch writing;
         std::map<std::string, std::string> text{
@@ -216,6 +226,7 @@ void render_pictures(const RenderOptions& options) {
             {"cellproj camera", to_json(cameras[i])},
             {"cellproj method", statistics.method},
             {"cellproj target", statistics.target},
+            {"cellproj drawn as", statistics.drawn_as},
             {"cellproj order", statistics.order},
             {"cellproj backend", statistics.backend + ", " + statistics.backend_version}};
         if (scene.opacity_field) text["cellproj opacity field"] = scene.opacity_field->name;
@@ -241,6 +252,7 @@ void add_render_command(CLI::App& app) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a mesh to a picture.");
     add_scene_options(*command, options->scene);
+    add_grid_options(*command, options->scene);
     add_iso_options(*command, options->scene.iso);
     command->add_option("-o,--output", options->output, "The picture: .png or .exr; several become NAME_000.png …")
         ->required();

@@ -29,12 +29,28 @@ ImageSize parse_size(const std::string& text) {
     return size;
 }
 
-// The mean length of the rays through a mesh over all that meet its box: 4 · volume / surface of the box (Cauchy). Thin and sparse
-// meshes get more extinction by it than compact ones of the same diagonal.
-double mean_path(const TetMesh& mesh) {
+double volume_of(const TetMesh& mesh) {
     double volume = 0;
     for (CellId cell = 0; cell < mesh.tets.size(); ++cell) volume += std::abs(signed_volume(mesh, cell));
-    const Bounds box = bounds(mesh.points);
+    return volume;
+}
+
+double volume_of(const Grid& grid) {
+    double volume = 0;
+    const GridDimensions n = grid.dimensions();
+    for (std::size_t k = 0; k + 1 < n.nk; ++k)
+        for (std::size_t j = 0; j + 1 < n.nj; ++j)
+            for (std::size_t i = 0; i + 1 < n.ni; ++i) {
+                if (grid.is_blanked({i, j, k})) continue;
+                const glm::dvec3 edges = grid.cell_edges({i, j, k});
+                volume += edges.x * edges.y * edges.z;
+            }
+    return volume;
+}
+
+// The mean length of the rays through a mesh over all that meet its box: 4 · volume / surface of the box (Cauchy). Thin and sparse
+// meshes get more extinction by it than compact ones of the same diagonal.
+double mean_path(double volume, const Bounds& box) {
     const glm::dvec3 edge = box.high - box.low;
     const double surface = 2 * (edge.x * edge.y + edge.y * edge.z + edge.z * edge.x);
     return volume > 0 && surface > 0 ? 4 * volume / surface : box.diagonal();
@@ -63,7 +79,8 @@ ColorRange choose_range(const SceneOptions& options, const ScalarField& field) {
 }
 
 // `opacity`: the opacity field, or null.
-TransferFunction preset_transfer(const SceneOptions& options, const Input& input, const ScalarField& field, const ScalarField* opacity) {
+TransferFunction preset_transfer(const SceneOptions& options, const Input& input, const Grid* grid, const ScalarField& field,
+                                 const ScalarField* opacity) {
     const auto [low, high] = choose_range(options, field);
     const bool log = options.axis == "log";
     if (log && !(low > 0)) {
@@ -72,7 +89,7 @@ TransferFunction preset_transfer(const SceneOptions& options, const Input& input
                      "give --range LOW,HIGH with LOW > 0"});
     }
     // A cube's diagonal is 2.6 times its mean path.
-    const double size = 2.6 * mean_path(*input.mesh);
+    const double size = 2.6 * mean_path(grid ? volume_of(*grid) : volume_of(*input.mesh), bounds(input.mesh->points));
     const TransferFunction transfer =
         default_transfer_function(low, high, size, options.colors, log ? ScalarAxis::log : ScalarAxis::linear);
     if (!opacity) return transfer;
@@ -81,12 +98,12 @@ TransferFunction preset_transfer(const SceneOptions& options, const Input& input
     return {transfer.model(), transfer.color_nodes(), over_opacity.extinction_nodes()};
 }
 
-std::shared_ptr<const TransferFunction> choose_transfer(const SceneOptions& options, const Input& input,
+std::shared_ptr<const TransferFunction> choose_transfer(const SceneOptions& options, const Input& input, const Grid* grid,
                                                         const ScalarField& field, const ScalarField* opacity) {
     const bool from_scene = input.transfer && options.field.empty() && !opacity && !options.colors_chosen;
     const TransferFunction transfer = !options.transfer.empty() ? read_transfer_function(options.transfer)
                                       : from_scene              ? *input.transfer
-                                                                : preset_transfer(options, input, field, opacity);
+                                                                : preset_transfer(options, input, grid, field, opacity);
     return std::make_shared<TransferFunction>(with_scaled_extinction(transfer, options.opacity_scale));
 }
 
@@ -140,8 +157,8 @@ ImageSize require_possible(const SceneOptions& options) {
     return parse_size(options.size);
 }
 
-LoadedScene load_scene(const SceneOptions& options) {
-    Input input = options.tetrahedralize ? load_filled(options.input.file, options.surface) : load(options.input);
+LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as) {
+    Input input = options.tetrahedralize ? load_filled(options.input.file, options.surface) : load(options.input, drawn_as);
     const auto field = std::make_shared<const ScalarField>(choose_field(options, input));
     warn_of_values(*field);
     std::shared_ptr<const ScalarField> opacity;
@@ -149,12 +166,16 @@ LoadedScene load_scene(const SceneOptions& options) {
         opacity = std::make_shared<const ScalarField>(load_field(options, input, options.opacity_field));
         warn_of_values(*opacity);
     }
+    std::shared_ptr<const Grid> regular;
+    if (input.regular) regular = std::make_shared<const Grid>(make_grid(*input.regular, *field));
     Scene scene{.mesh = input.mesh,
                 .field = field,
-                .transfer = choose_transfer(options, input, *field, opacity.get()),
+                .transfer = choose_transfer(options, input, regular.get(), *field, opacity.get()),
                 .opacity_field = opacity};
     if (options.iso.any()) add_surfaces(options, scene);
-    return {std::move(input), std::move(scene)};
+    std::optional<GridScene> grid;
+    if (regular) grid = GridScene{std::move(regular), scene.transfer, scene.surfaces};
+    return {std::move(input), std::move(scene), std::move(grid)};
 }
 
 std::optional<Backend> chosen_backend(const std::string& name) {

@@ -11,6 +11,7 @@
 #include "input.hpp"
 #include "iso_options.hpp"
 #include "project/camera.hpp"
+#include "render/grid_scene.hpp"
 #include "render/renderer.hpp"
 #include "render/scene.hpp"
 #include "surface_input.hpp"
@@ -26,6 +27,7 @@ struct SceneOptions {
 
     InputOptions input;
     bool tetrahedralize = false;
+    DrawnAs drawn_as = DrawnAs::tets;  // --as, where a command has it
     SurfaceOptions surface;
     std::filesystem::path camera, transfer;
     std::string field, opacity_field, projection = "perspective", size = "512x512", cell_values = "constant";
@@ -49,11 +51,12 @@ ImageSize require_possible(const SceneOptions& options);
 
 struct LoadedScene {
     Input input;
-    Scene scene;
+    Scene scene;                    // of a grid that is drawn as it is: a mesh without cells
+    std::optional<GridScene> grid;  // set for such a one
 };
 
 // Reads the mesh and chooses field and transfer function; warns of values that are not finite. Throws Error.
-LoadedScene load_scene(const SceneOptions& options);
+LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as = DrawnAs::tets);
 
 // The backend that `--backend` names: cpu, gl, or none for auto.
 std::optional<Backend> chosen_backend(const std::string& name);

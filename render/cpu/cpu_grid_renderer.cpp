@@ -119,7 +119,8 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.backend = "cpu";
     const int threads = oneapi::tbb::this_task_arena::max_concurrency();
     statistics.backend_version = instruction_set() + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
-    statistics.order = "grid";  // along each ray
+    statistics.drawn_as = "grid";
+    statistics.order = "none";  // rays meet their cells one after the other
     statistics.order_exact = true;
     *out = std::move(statistics);
     return image;

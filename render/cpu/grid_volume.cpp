@@ -31,20 +31,23 @@ float scene_value(const GridUnits& units, double s) {
 // Whether anything can be seen for scalars in a range, by the number of bins before each that show something.
 class Visibility {
 public:
-    explicit Visibility(const TransferFunction& transfer) : before_(function_bins + 1, 0) {
+    explicit Visibility(const TransferFunction& transfer) : transfer_(transfer), before_(function_bins + 1, 0) {
         for (std::size_t b = 0; b < function_bins; ++b) {
             const double width = 1.0 / static_cast<double>(function_bins), begin = static_cast<double>(b) * width;
             // A little wider: the kernels round nodes to float32.
             before_[b + 1] = before_[b] + (transfer.visible(begin - 1e-6, begin + width + 1e-6) ? 1 : 0);
         }
     }
-    bool all() const { return before_.back() == function_bins; }
-    bool operator()(float low, float high) const { return before_[bin(high) + 1] > before_[bin(low)]; }
+    bool operator()(float low, float high) const {
+        if (before_[bin(high) + 1] == before_[bin(low)]) return false;
+        return bin(high) > bin(low) || transfer_.visible(low, high);  // such as exactly 0, where a ramp begins
+    }
 
 private:
     static std::size_t bin(float s) {
         return std::min(static_cast<std::size_t>(s * static_cast<float>(function_bins)), function_bins - 1);
     }
+    const TransferFunction& transfer_;
     std::vector<std::size_t> before_;
 };
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "grid_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <map>
+
+#include "mesh/error.hpp"
+
+namespace cellproj::cli {
+
+namespace {
+
+const std::map<std::string, DrawnAs> names{{"auto", DrawnAs::automatic}, {"grid", DrawnAs::grid}, {"tets", DrawnAs::tets}};
+
+// Throws Error (option).
+void require_grid_options(const SceneOptions& options, const PictureWishes& wishes) {
+    const auto refuse = [](const char* option, const char* expected, const char* found) {
+        throw Error({ErrorKind::option, option, expected, found, "leave it out, or draw the grid as tetrahedra (--as tets)"});
+    };
+    if (options.tetrahedralize) refuse("--tetrahedralize", "a file that holds a regular grid", "a surface");
+    if (!options.opacity_field.empty()) refuse("--opacity-field", "colour and opacity from one field for a regular grid", "another field");
+    if (options.cell_values == "averaged") refuse("--cell-values", "constant for a regular grid", "averaged");
+    if (wishes.named_order) refuse("--order", "auto for a regular grid, whose cells need no sorting", "another order");
+    if (wishes.quality.check_rays > 0) refuse("--verify-order", "a mesh, whose cells are sorted", "a regular grid");
+    if (wishes.measured_method) refuse("--max-error", "--method for a regular grid, such as exact:1e-3", "--max-error");
+    require_grid_drawn(wishes.backend, {wishes.quality.method, wishes.quality.target}, options.iso.any());
+}
+
+}  // namespace
+
+void add_grid_options(CLI::App& command, SceneOptions& options) {
+    options.drawn_as = DrawnAs::automatic;
+    command.add_option_function<std::string>("--as", [&options](const std::string& name) { options.drawn_as = names.at(name); },
+                       "How a regular grid (image, rectilinear grid, bare voxels) is drawn: grid (as it is, the scalar trilinear in its boxes), tets "
+                       "(cut into tetrahedra), or auto: grid, and tets for what only they know")
+        ->check(CLI::IsMember(names))->default_str("auto");
+}
+
+DrawnAs choose_drawn_as(const SceneOptions& options, const PictureWishes& wishes) {
+    if (options.drawn_as == DrawnAs::tets) return DrawnAs::tets;
+    try {
+        require_grid_options(options, wishes);
+    } catch (const Error&) {
+        if (options.drawn_as == DrawnAs::grid) throw;
+        return DrawnAs::tets;
+    }
+    return options.drawn_as;
+}
+
+}  // namespace cellproj::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Whether a file's regular grid is drawn as it is or as tetrahedra.
+#pragma once
+
+#include <string>
+
+#include "render/grid_renderer.hpp"
+#include "render/renderer.hpp"
+#include "scene_options.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace cellproj::cli {
+
+// --as, into `options`, which must live as long as the command.
+void add_grid_options(CLI::App& command, SceneOptions& options);
+
+// What a picture asks of a renderer besides the scene.
+struct PictureWishes {
+    Backend backend;  // of a grid
+    Quality quality;
+    bool measured_method;  // --max-error
+    bool named_order;      // --order, but for auto
+};
+
+// --as auto becomes tets where grids do not know something that was asked for. Throws Error (option) where --as grid was.
+DrawnAs choose_drawn_as(const SceneOptions& options, const PictureWishes& wishes);
+
+}  // namespace cellproj::cli
