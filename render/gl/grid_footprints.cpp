@@ -88,7 +88,7 @@ std::size_t GridFootprints::draw(std::span<const std::uint32_t> cells) {
     if (points_fit(cells)) {
         points_.use();
         stream_.draw_indices(cells, Primitive::points);
-        return 0;
+        return 2 * cells.size();
     }
     indices_.clear();
     for (const std::uint32_t id : cells)

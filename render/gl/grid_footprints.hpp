@@ -28,7 +28,7 @@ public:
     GridFootprints(const GridView& view, const SegmentShader& shader, const MakeProgram& make_program, const std::string& defines,
                    TriangleStream& stream);
 
-    // In their order. Returns the number of triangles; points are none.
+    // In their order. Returns the number of triangles, two for a square or rectangle.
     std::size_t draw(std::span<const std::uint32_t> cells);
     // Whether no cell reaches from one pixel to the next (parallel views).
     bool all_smaller_than_a_pixel() const { return !view_.perspective() && diameter_ * view_.transform().pixels_per_unit() < 1.0; }

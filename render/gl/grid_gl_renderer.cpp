@@ -23,9 +23,6 @@ namespace {
 
 constexpr std::size_t cells_per_chunk = 16384;
 
-// In scene units: no segment is longer than the diagonal of the box.
-constexpr double longest_segment = 2.0;
-
 constexpr unsigned int values_unit = 8;  // behind those of the methods (segment_shader.hpp)
 
 OsmesaContext current(OsmesaContext context) {
@@ -92,13 +89,13 @@ void GlGridRenderer::prepare(const GridScene& scene, const GridQuality& quality)
     if (!same_transfer || !shader_ || !same_light) prepare_light(quality, same_grid);
 }
 
-// What most segments are like; of slabs, all that look along their normal.
-double GlGridRenderer::typical_length(const GridSampling& sampling) const {
-    if (sampling.cut == GridSampling::Cut::cells) return volume_->mean_chord();
-    double length = 0.0;
+// Slabs: what most of them are that look along their normal, and the diagonal of the box, as slices may be seen edge-on.
+GlGridRenderer::Lengths GlGridRenderer::segment_lengths(const GridSampling& sampling) const {
+    if (sampling.cut == GridSampling::Cut::cells) return {volume_->mean_chord(), volume_->longest_chord()};
+    double thickest = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        length = std::max(length, slab_thickness(*scene_.grid, volume_->units(), sampling, axis));
-    return length;
+        thickest = std::max(thickest, slab_thickness(*scene_.grid, volume_->units(), sampling, axis));
+    return {thickest, 2.0};
 }
 
 void GlGridRenderer::prepare_light(const GridQuality& quality, bool same_grid) {
@@ -109,7 +106,8 @@ void GlGridRenderer::prepare_light(const GridQuality& quality, bool same_grid) {
     const bool keeps = shader && same_grid && quality_.method == quality.method && quality_.sampling == quality.sampling;
     if (!keeps || !shader->update(transfer)) {
         shader.reset();  // its memory first
-        shader = make_segment_shader(quality.method, transfer, FieldsRead::one, longest_segment, typical_length(quality.sampling));
+        const Lengths lengths = segment_lengths(quality.sampling);
+        shader = make_segment_shader(quality.method, transfer, FieldsRead::one, lengths.longest, lengths.mean);
     }
     if (quality.sampling.light == GridSampling::Light::pre) classified_ = volume_->classified(*scene_.grid, transfer);
     shader_ = std::move(shader);
@@ -151,6 +149,7 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     if (!out) return image;
     statistics.counts.cells = scene.grid->cell_count();
     statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
+    statistics.drawn_as = "grid";
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
     statistics.table_bytes = shader_->table_bytes();

@@ -33,7 +33,10 @@ public:
 
 private:
     void prepare_light(const GridQuality& quality, bool same_grid);
-    double typical_length(const GridSampling& sampling) const;
+    struct Lengths {
+        double mean, longest;  // of segments [scene units]
+    };
+    Lengths segment_lengths(const GridSampling& sampling) const;
     const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
     void draw_cells(const GridView& view, const Camera& camera, Statistics& statistics);
     void draw_slabs(const GridView& view, Statistics& statistics);

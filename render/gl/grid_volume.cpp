@@ -9,6 +9,8 @@
 #include <limits>
 #include <string>
 
+#include <glm/geometric.hpp>
+
 #include "mesh/error.hpp"
 
 namespace cellproj::gl {
@@ -52,11 +54,21 @@ double find_mean_chord(const Grid& grid, double length) {
     return 2.0 / inverse;  // volume xyz, surface 2·(n_x·yz + n_y·xz + n_z·xy)
 }
 
+double find_longest_chord(const Grid& grid, double length) {
+    glm::dvec3 edges(0.0);
+    for (int a = 0; a < 3; ++a) {
+        const GridAxis& axis = grid.axes[static_cast<std::size_t>(a)];
+        for (std::size_t i = 0; i < axis.cells(); ++i) edges[a] = std::max(edges[a], axis.coordinates[i + 1] - axis.coordinates[i]);
+    }
+    return glm::length(edges / length);
+}
+
 }  // namespace
 
 GridVolume::GridVolume(const GridScene& scene)
     : units_((require_numbers(*scene.grid), units_of(*scene.grid))),
       mean_chord_(find_mean_chord(*scene.grid, units_.length)),
+      longest_chord_(find_longest_chord(*scene.grid, units_.length)),
       values_(upload(*scene.grid, units_)) {
     set_transfer(*scene.grid, *scene.transfer);
 }

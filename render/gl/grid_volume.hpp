@@ -25,6 +25,8 @@ public:
     const Texture& values() const { return values_; }
     // 4·volume / surface of a cell by Cauchy's formula, in the mean over all [GridUnits::length], > 0.
     double mean_chord() const { return mean_chord_; }
+    // No segment in a cell is longer [GridUnits::length].
+    double longest_chord() const { return longest_chord_; }
 
     // Emission and extinction at the points, for slabs that interpolate them; of a function in scene units.
     Texture classified(const Grid& grid, const TransferFunction& transfer) const;
@@ -34,7 +36,7 @@ public:
 
 private:
     GridUnits units_;
-    double mean_chord_;
+    double mean_chord_, longest_chord_;
     Texture values_;
     std::vector<std::uint8_t> drawn_;
 };
