@@ -30,7 +30,7 @@ struct RenderOptions {
     SceneOptions scene;
     AnnotationOptions annotations;
     std::filesystem::path output, stats;
-    std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto";
+    std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto", sampling = "cells";
     std::optional<double> max_error;  // --max-error: the method is chosen by measuring
     bool verify_order = false;
     std::vector<double> background{1, 1, 1};
@@ -178,9 +178,11 @@ void render_pictures(const RenderOptions& options) {
                     .order_per_pixel = options.order == "pixel",
                     .check_rays = options.verify_order ? rays_of_proof : 0};
     const FieldsRead fields = options.scene.fields();
-    const Backend grid_backend = chosen_backend(options.backend).value_or(Backend::cpu);
+    const GridSampling sampling = parse_grid_sampling(options.sampling, "--sampling");
+    const Backend grid_backend =
+        chosen_backend(options.backend).value_or(sampling.cut == GridSampling::Cut::cells ? Backend::cpu : Backend::gl_osmesa);
     const DrawnAs drawn_as =
-        choose_drawn_as(options.scene, {grid_backend, quality, options.max_error.has_value(), options.order != "auto"});
+        choose_drawn_as(options.scene, {grid_backend, quality, sampling, options.max_error.has_value(), options.order != "auto"});
     const Backend backend = chosen_backend(options.backend).value_or(usual_backend(quality, fields));
     if (drawn_as != DrawnAs::grid) require_drawn(backend, quality, fields);
     require_writable_image(options.output);
@@ -201,7 +203,7 @@ void render_pictures(const RenderOptions& options) {
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
     const auto renderer = loaded.grid ? nullptr : make_renderer(backend, {.threads = options.threads});
     const auto grid_renderer = loaded.grid ? make_grid_renderer(grid_backend, {.threads = options.threads}) : nullptr;
-    const GridQuality grid_quality{quality.method, quality.target};
+    const GridQuality grid_quality{quality.method, quality.target, sampling};
     std::optional<double> error;  // of the first view
     if (options.max_error && renderer)
         quality = choose_measured(*renderer, backend, scene, views, view, *options.max_error, quality, error.emplace());
@@ -264,6 +266,10 @@ void add_render_command(CLI::App& app) {
         ->expected(3)->delimiter(',')->check(CLI::Range(0.0, 1.0))->capture_default_str();
     command->add_option("--bits", options->bits, "Bits per channel of a PNG: 8 or 16")
         ->check(CLI::IsMember({8, 16}))->capture_default_str();
+    command->add_option("--sampling", options->sampling,
+                        "What cuts rays through a regular grid: cells, or slabs between slices by OpenGL: object:N or view:N, "
+                        "behind that :pre or :post shaded, :xM slabs a polygon (render/README.md)")
+        ->capture_default_str();
     CLI::Option* method = command->add_option("--method", options->method, "How a ray's piece in a cell becomes light: NAME[:CHOICE…] (classify/README.md)")
         ->capture_default_str();
     command->add_option("--max-error", options->max_error,
