@@ -76,7 +76,8 @@ void GridView::set_screen(const Program& program) const {
 void GridView::set_rays(const Program& program) const {
     set_screen(program);
     const glm::dvec3 forward(axes_[0].z, axes_[1].z, axes_[2].z);
-    program.set("axis_forward", glm::vec3(forward));
+    // Parallel rays through constant cells ask for their length alone.
+    if (perspective() || grid_.location == FieldLocation::points) program.set("axis_forward", glm::vec3(forward));
     if (perspective()) return;
     const auto still = glm::lessThan(glm::abs(forward), glm::dvec3(stillness));
     program.set("inverse_forward", glm::vec3(glm::mix(1.0 / forward, glm::dvec3(1e20), still)));

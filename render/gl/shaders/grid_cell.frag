@@ -12,12 +12,16 @@ layout(location = 0) out vec4 light;  // associated colour, opacity
 // Scalars 0..1, length >= 0, all in scene units.
 vec4 light_of_segment(float s_front, float s_back, float segment);
 
+#ifdef ON_CELLS
+float scalar_at(vec3 place) { return v_bottom.x; }
+#else
 float scalar_at(vec3 place) {
     vec3 u = clamp((place - v_low) * v_inverse_edges, 0.0, 1.0);
     vec4 slice = mix(v_bottom, v_top, u.z);
     vec2 row = mix(slice.xy, slice.zw, u.y);
     return mix(row.x, row.y, u.x);
 }
+#endif
 
 void main() {
     Ray ray = ray_of_pixel();
