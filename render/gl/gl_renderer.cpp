@@ -23,24 +23,11 @@ constexpr std::size_t cells_per_chunk = 16384;
 // In scene units, where half the diagonal of the mesh's box is 1: no segment is longer than the diagonal.
 constexpr double longest_segment = 2.0;
 
-// The context must be current before the members that are OpenGL objects are made.
-OsmesaContext current(OsmesaContext context) {
-    context.make_current();
-    return context;
-}
-
 // The nearest surface alone: what is nearer has a larger depth (shaders/surfaces.frag), and nothing has 0.
 void set_depth_test() {
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
-}
-
-void set_blending() {
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // associated colours, back to front
 }
 
 // Segments that are taken back (project/silhouette.hpp) leave what is below nothing by their rounding.
@@ -57,10 +44,6 @@ void set_camera(const Program& program, const CellStream& cells) {
     program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
     program.set("inverse_near", static_cast<float>(1.0 / cells.near_depth()));
     program.set("pixels_per_unit", static_cast<float>(cells.transform().pixels_per_unit()));
-}
-
-const char* blending_define(const Method& method) {
-    return method.blending == Blending::half ? "#define HALF_OPACITY\n" : "";
 }
 
 // Projects chunks of the order into batches, each of which is drawn while the next one is projected.
@@ -154,13 +137,6 @@ void GlRenderer::prepare_surfaces(const Scene& scene) {
     surfaces_->set_visible(scene.transfer, prepared_->visible());
 }
 
-const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
-    const std::string key = defines + vertex + fragment;
-    const auto known = programs_.find(key);
-    if (known != programs_.end()) return known->second;
-    return programs_[key] = Program(vertex, fragment, defines);
-}
-
 Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality,
                          Statistics* out) {
     Statistics statistics;
@@ -181,7 +157,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     const CellStream cells(*prepared_, camera, size, surfaces_ ? surfaces_->drawn() : std::span<const std::uint8_t>{});
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
-    sorted ? set_blending() : set_depth_test();
+    sorted ? blend_back_to_front() : set_depth_test();
     if (surfaces_) {
         draw_surfaces(cells, order, statistics);
     } else {
@@ -225,7 +201,7 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
     const bool perspective = cells.transform().perspective();
     const bool two_fields = fields_read(prepared_->scene()) == FieldsRead::two;
     const Program& segments =
-        program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shaders::light_glsl + shader_->source(),
+        programs_.of(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shaders::light_glsl + shader_->source(),
                 std::string(perspective ? "#define PERSPECTIVE\n" : "") + (two_fields ? "#define TWO_FIELDS\n" : "") +
                     blending_define(method_));
     if (perspective) set_camera(segments, cells);
@@ -243,7 +219,7 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
 void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
     const NearnessFrame frame = cells.nearness_frame();
     const bool medium = surfaces_->has_medium();
-    const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
+    const Program& surfaces = programs_.of(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
                                       shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
                                       surfaces_->defines(frame.perspective));
     surfaces_->bind(surfaces, cells, frame);
@@ -255,7 +231,7 @@ void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, 
 }
 
 void GlRenderer::draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
-    program(shaders::lit_vert, shaders::lit_frag, blending_define(method_)).use();
+    programs_.of(shaders::lit_vert, shaders::lit_frag, blending_define(method_)).use();
     draw<LitVertex>(lit_, order, statistics,
                     [&](const ViewOrder& chunk, LitBatch& batch) { cells.project(chunk, *lighting_, batch); });
 }

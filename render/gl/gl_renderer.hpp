@@ -4,15 +4,14 @@
 // buffers in chunks, so that the projection of one chunk overlaps the drawing of those before it.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "classify/vertex_light.hpp"
 #include "render/cell_stream.hpp"
 #include "render/gl/objects.hpp"
 #include "render/gl/osmesa_context.hpp"
+#include "render/gl/programs.hpp"
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/surface_pass.hpp"
 #include "render/gl/triangle_stream.hpp"
@@ -35,13 +34,12 @@ private:
     void prepare_surfaces(const Scene& scene);
     ViewOrder find_order(const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
     bool needs_order() const { return !surfaces_ || surfaces_->needs_order(); }
-    const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
     void draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
     void draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
     void draw_surfaces(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
 
     OsmesaContext context_;
-    std::map<std::string, Program> programs_;  // by their text
+    Programs programs_;
     TriangleStream segments_, two_field_segments_, lit_, surface_segments_;
     Target target_;
     std::optional<PreparedScene> prepared_;

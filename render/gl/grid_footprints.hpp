@@ -8,24 +8,21 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "render/gl/grid_view.hpp"
+#include "render/gl/programs.hpp"
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/triangle_stream.hpp"
 
 namespace cellproj::gl {
 
-// A program of these texts, kept by whom is asked.
-using MakeProgram = std::function<const Program&(const std::string& vertex, const std::string& fragment, const std::string& defines)>;
-
 class GridFootprints {
 public:
     // All must outlive this. `defines`: besides those of the view.
-    GridFootprints(const GridView& view, const SegmentShader& shader, const MakeProgram& make_program, const std::string& defines,
+    GridFootprints(const GridView& view, const SegmentShader& shader, Programs& programs, const std::string& defines,
                    TriangleStream& stream);
 
     // In their order. Returns the number of triangles, two for a square or rectangle.

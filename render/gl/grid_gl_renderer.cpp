@@ -25,13 +25,6 @@ constexpr std::size_t cells_per_chunk = 16384;
 
 constexpr unsigned int values_unit = 8;  // behind those of the methods (segment_shader.hpp)
 
-OsmesaContext current(OsmesaContext context) {
-    context.make_current();
-    return context;
-}
-
-const char* blending_define(const Method& method) { return method.blending == Blending::half ? "#define HALF_OPACITY\n" : ""; }
-
 // What of a grid slices can show: a texture interpolates values on points, evenly spaced, all of them there.
 void require_sliced(const Grid& grid, const GridSampling& sampling) {
     const auto refuse = [&](const char* expected, const char* found) {
@@ -114,13 +107,6 @@ void GlGridRenderer::prepare_light(const GridQuality& quality, bool same_grid) {
     quality_ = quality;
 }
 
-const Program& GlGridRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
-    const std::string key = defines + vertex + fragment;
-    const auto known = programs_.find(key);
-    if (known != programs_.end()) return known->second;
-    return programs_[key] = Program(vertex, fragment, defines);
-}
-
 Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality,
                              Statistics* out) {
     Statistics statistics;
@@ -132,10 +118,7 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     statistics.ms.plan = total.ms();
 
     target_.clear_and_bind();
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    blend_back_to_front();
     const GridView view(*scene.grid, volume_->units(), camera, size);
     volume_->values().bind(values_unit);
     const bool cells = quality.sampling.cut == GridSampling::Cut::cells;
@@ -162,12 +145,11 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
 }
 
 void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, Statistics& statistics) {
-    const MakeProgram make_program = [this](const auto&... texts) -> const Program& { return program(texts...); };
     const std::string blending = blending_define(quality_.method);
-    GridFootprints footprints(view, *shader_, make_program, blending, indices_);
+    GridFootprints footprints(view, *shader_, programs_, blending, indices_);
     std::optional<GridTemplates> templates;
     if (light_at_vertices(quality_.method))
-        templates.emplace(view, volume_->units(), *shader_, make_program, blending, footprints, indices_, pairs_);
+        templates.emplace(view, volume_->units(), *shader_, programs_, blending, footprints, indices_, pairs_);
 
     GridTraversal traversal(*scene_.grid, camera.viewpoint(), volume_->drawn());
     std::vector<std::uint32_t> cells;
@@ -188,8 +170,7 @@ void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, Stat
 
 void GlGridRenderer::draw_slabs(const GridView& view, Statistics& statistics) {
     const Stopwatch drawing;
-    const MakeProgram make_program = [this](const auto&... texts) -> const Program& { return program(texts...); };
-    statistics.counts.triangles = gl::draw_slabs(view, volume_->units(), quality_.sampling, *shader_, classified_, make_program,
+    statistics.counts.triangles = gl::draw_slabs(view, volume_->units(), quality_.sampling, *shader_, classified_, programs_,
                                                  blending_define(quality_.method), slabs_);
     statistics.counts.drawn = scene_.grid->cell_count();
     glFinish();

@@ -3,16 +3,15 @@
 // Regular grids through OpenGL, after Wilhelms and Van Gelder, "A Coherent Projection Approach for Direct Volume Rendering", 1991.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "project/camera.hpp"
 #include "render/gl/grid_view.hpp"
 #include "render/gl/grid_volume.hpp"
 #include "render/gl/objects.hpp"
 #include "render/gl/osmesa_context.hpp"
+#include "render/gl/programs.hpp"
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/triangle_stream.hpp"
 #include "render/grid_renderer.hpp"
@@ -37,12 +36,11 @@ private:
         double mean, longest;  // of segments [scene units]
     };
     Lengths segment_lengths(const GridSampling& sampling) const;
-    const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
     void draw_cells(const GridView& view, const Camera& camera, Statistics& statistics);
     void draw_slabs(const GridView& view, Statistics& statistics);
 
     OsmesaContext context_;
-    std::map<std::string, Program> programs_;  // by their text
+    Programs programs_;
     TriangleStream indices_, pairs_, slabs_;
     Target target_;
     GridScene scene_;

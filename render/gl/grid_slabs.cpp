@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -131,13 +134,13 @@ double slab_thickness(const Grid& grid, const GridUnits& units, const GridSampli
 }
 
 std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const SegmentShader& shader,
-                       const Texture& classified, const MakeProgram& make_program, const std::string& defines, TriangleStream& stream) {
+                       const Texture& classified, Programs& programs, const std::string& defines, TriangleStream& stream) {
     using Light = GridSampling::Light;
     const bool pre = sampling.light == Light::pre;
     const std::string own = "#define SLABS " + std::to_string(sampling.per_polygon) + '\n' + (pre ? "#define PRE\n" : "") +
                             (sampling.light == Light::post ? "#define POST\n" : "");
     const Program& program =
-        make_program(shaders::grid_slab_vert + (pre ? shaders::no_cell_glsl : shader.vertex_source()),
+        programs.of(shaders::grid_slab_vert + (pre ? shaders::no_cell_glsl : shader.vertex_source()),
                      shaders::grid_rays_frag + shaders::grid_slab_frag + shaders::light_glsl + (pre ? std::string() : shader.source()),
                      view.defines() + defines + own);
     view.set_rays(program);

@@ -6,11 +6,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
-#include <vector>
 
-#include "render/gl/grid_footprints.hpp"
 #include "render/gl/grid_view.hpp"
+#include "render/gl/programs.hpp"
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/triangle_stream.hpp"
 #include "render/grid_sampling.hpp"
@@ -32,6 +32,6 @@ std::size_t nearest_axis(const GridView& view);
 
 // Draws all. Returns the number of triangles. `classified`: for GridSampling::Light::pre, at the points.
 std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const SegmentShader& shader,
-                       const Texture& classified, const MakeProgram& make_program, const std::string& defines, TriangleStream& stream);
+                       const Texture& classified, Programs& programs, const std::string& defines, TriangleStream& stream);
 
 }  // namespace cellproj::gl

@@ -25,11 +25,11 @@ bool is_uniform(const Grid& grid) {
     return std::all_of(grid.axes.begin(), grid.axes.end(), [](const GridAxis& axis) { return axis.spacing.has_value(); });
 }
 
-const Program& make_ready(const GridView& view, const SegmentShader& shader, const MakeProgram& make_program,
+const Program& make_ready(const GridView& view, const SegmentShader& shader, Programs& programs,
                           const std::string& defines, bool moved) {
     // Both sources may hold what they share.
     const std::string method = shaders::light_glsl + shader.vertex_source() + shader.source();
-    const Program& program = make_program(shaders::grid_place_vert + shaders::grid_lit_vert + method, shaders::grid_lit_frag,
+    const Program& program = programs.of(shaders::grid_place_vert + shaders::grid_lit_vert + method, shaders::grid_lit_frag,
                                           view.defines() + defines + "#define AT_VERTICES\n" + (moved ? "" : "#define STREAMED\n"));
     if (moved) view.set_place(program);
     shader.bind(program);
@@ -61,14 +61,14 @@ Texture upload(const CellTemplate& shape) {
 std::span<const VertexAttribute> vertex_attributes(const TemplatePair*) { return pair_attributes; }
 
 GridTemplates::GridTemplates(const GridView& view, const GridUnits& units, const SegmentShader& shader,
-                             const MakeProgram& make_program, const std::string& defines, GridFootprints& footprints,
+                             Programs& programs, const std::string& defines, GridFootprints& footprints,
                              TriangleStream& indices, TriangleStream& pairs)
     : view_(view),
       units_(units),
       footprints_(footprints),
       indices_(indices),
       pairs_(pairs),
-      program_(make_ready(view, shader, make_program, defines, !view.perspective() && is_uniform(view.grid()))),
+      program_(make_ready(view, shader, programs, defines, !view.perspective() && is_uniform(view.grid()))),
       moved_(!view.perspective() && is_uniform(view.grid())),
       towards_eye_(-view.axes()[0].z, -view.axes()[1].z, -view.axes()[2].z) {
     if (!moved_) return;

@@ -14,6 +14,7 @@
 #include "project/cell_template.hpp"
 #include "render/gl/grid_footprints.hpp"
 #include "render/gl/grid_view.hpp"
+#include "render/gl/programs.hpp"
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/triangle_stream.hpp"
 
@@ -30,7 +31,7 @@ class GridTemplates {
 public:
     // All must outlive this. `footprints`: for cells that reach behind the near plane, which have no projection, and where all are
     // smaller than a pixel; with light by the same method in each pixel.
-    GridTemplates(const GridView& view, const GridUnits& units, const SegmentShader& shader, const MakeProgram& make_program,
+    GridTemplates(const GridView& view, const GridUnits& units, const SegmentShader& shader, Programs& programs,
                   const std::string& defines, GridFootprints& footprints, TriangleStream& indices, TriangleStream& pairs);
 
     // In their order. Returns the number of triangles.

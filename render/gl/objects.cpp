@@ -159,6 +159,13 @@ void Program::set(const char* uniform, const glm::vec4& value) const {
     glProgramUniform4f(program_.name(), location(uniform), value.x, value.y, value.z, value.w);
 }
 
+void blend_back_to_front() {
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+}
+
 void check_errors(const char* where) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) return;

@@ -96,6 +96,9 @@ private:
     Object<delete_program> program_;
 };
 
+// The blending of associated colours, back to front, without a depth test.
+void blend_back_to_front();
+
 // Throws Error (environment) when an OpenGL call since the last check failed; `where` says what was being done.
 void check_errors(const char* where);
 

@@ -81,4 +81,9 @@ void OsmesaContext::make_current() {
     library.loaded = true;
 }
 
+OsmesaContext current(OsmesaContext context) {
+    context.make_current();
+    return context;
+}
+
 }  // namespace cellproj::gl

@@ -26,4 +26,7 @@ private:
     std::unique_ptr<Library> library_;
 };
 
+// The context made current: for members of whoever owns it that are OpenGL objects.
+OsmesaContext current(OsmesaContext context);
+
 }  // namespace cellproj::gl
