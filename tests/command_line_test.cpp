@@ -285,7 +285,7 @@ TEST_F(CommandLine, ValuesThatAreNotFiniteBecomeANumberOnDemand) {
     std::string bytes(8 * sizeof(float), '\0');
     std::memcpy(bytes.data() + 4, &nan, sizeof nan);
     write("nan.raw", bytes);
-    const std::string command = "render nan.raw --dims 2 2 2 --type float32 -o nan.exr --size 20x20";
+    const std::string command = "render nan.raw --dims 2 2 2 --type float32 -o nan.exr --size 20x20 --as tets";
     const Outcome left_out = run(command);
     EXPECT_EQ(left_out.code, 0) << left_out.text;
     EXPECT_NE(left_out.text.find("1 of 8 values are not finite"), std::string::npos) << left_out.text;

@@ -5,7 +5,7 @@
 //
 //   cellproj_grids [CELLS [SIDE [FRAMES]]]     default: 100 512 5
 //
-// A cube of CELLS³ cells, SIDE² pixels, medians of FRAMES views. CPU: user time of all threads. Errors of RGB against
+// A cube of CELLS³ cells, SIDE² pixels, medians of FRAMES views that all draw in turn. CPU: user time of all threads. Errors of RGB against
 // GridReference at every 17th pixel of one view; VTK's picture has 8 bits (.0011 RMS at best).
 #include <algorithm>
 #include <chrono>
@@ -52,44 +52,60 @@ std::vector<PixelId> judged_pixels(ImageSize size) {
 
 Camera view(const Run& run, int i) { return scenes::measured_view(i, {glm::dvec3(0), glm::dvec3(1)}, run.projection); }
 
-void measure(const Run& run, const std::string& name, const Draw& draw, const std::function<Image()>& picture) {
-    draw(view(run, 0));
-    const ErrorMeasure error = compare(picture(), run.truths).color;
+// Who draws.
+struct Contender {
+    std::string name;
+    Draw draw;
+    std::function<Image()> picture;  // the last one
     std::vector<double> cpu, wall;
-    for (int frame = 1; frame <= run.frames; ++frame) {
-        const Stopwatch watch;
-        const double before = bench::user_ms();
-        draw(view(run, frame));
-        cpu.push_back(bench::user_ms() - before);
-        wall.push_back(watch.ms());
-    }
-    std::printf("  %-22s %9.1f %9.1f %10.1e %10.1e\n", name.c_str(), median(cpu), median(wall), error.rms, error.maximum);
-    std::fflush(stdout);
+};
+
+Contender grid_contender(const Run& run, const std::string& method) {
+    const auto image = std::make_shared<Image>();
+    return {method,
+            [image, renderer = std::shared_ptr(make_grid_renderer(Backend::cpu)), scene = GridScene{run.grid, run.transfer}, size = run.size,
+             quality = GridQuality{.method = parse_method(method)}](const Camera& camera) { *image = renderer->render(scene, camera, size, quality); },
+            [image] { return *image; }, {}, {}};
 }
 
-void measure_grid(const Run& run, const std::string& method) {
-    const auto renderer = make_grid_renderer(Backend::cpu);
-    const GridScene scene{run.grid, run.transfer};
-    const GridQuality quality{.method = parse_method(method)};
-    Image image;
-    measure(run, method, [&](const Camera& camera) { image = renderer->render(scene, camera, run.size, quality); }, [&] { return image; });
-}
-
-void measure_tets(const Run& run) {
+Contender tets_contender(const Run& run) {
+    const auto image = std::make_shared<Image>();
     const Scene scene = testing_support::scene_of(testing_support::grid_mesh(static_cast<int>(run.grid->axes[0].cells())), scenes::waves, *run.transfer);
-    const auto renderer = make_renderer(Backend::cpu);
-    Image image;
-    measure(run, "as tetrahedra", [&](const Camera& camera) { image = renderer->render(scene, camera, run.size); }, [&] { return image; });
+    return {"as tetrahedra",
+            [image, scene, renderer = std::shared_ptr(make_renderer(Backend::cpu)), size = run.size](const Camera& camera) { *image = renderer->render(scene, camera, size); },
+            [image] { return *image; }, {}, {}};
 }
 
 #if CELLPROJ_BENCH_VTK
-void measure_vtk(const Run& run, double step) {
-    bench::VtkFixedPoint vtk(*run.grid, *run.transfer, run.size, step);
+Contender vtk_contender(const Run& run, double step) {
+    const auto vtk = std::make_shared<bench::VtkFixedPoint>(*run.grid, *run.transfer, run.size, step);
     char name[40];
     std::snprintf(name, sizeof name, "VTK fixed point, %.2g", step);
-    measure(run, name, [&](const Camera& camera) { vtk.draw(camera); }, [&] { return vtk.picture(); });
+    return {name, [vtk](const Camera& camera) { vtk->draw(camera); }, [vtk] { return vtk->picture(); }, {}, {}};
 }
 #endif
+
+// In each round everybody draws the same new view, so that a busy machine is unkind to all.
+void measure(const Run& run, std::vector<Contender> contenders) {
+    std::vector<ErrorMeasure> errors;
+    for (Contender& c : contenders) {
+        c.draw(view(run, 0));
+        errors.push_back(compare(c.picture(), run.truths).color);
+    }
+    for (int frame = 1; frame <= run.frames; ++frame) {
+        for (Contender& c : contenders) {
+            const Stopwatch watch;
+            const double before = bench::user_ms();
+            c.draw(view(run, frame));
+            c.cpu.push_back(bench::user_ms() - before);
+            c.wall.push_back(watch.ms());
+        }
+    }
+    for (std::size_t i = 0; i < contenders.size(); ++i)
+        std::printf("  %-22s %9.1f %9.1f %10.1e %10.1e\n", contenders[i].name.c_str(), median(contenders[i].cpu), median(contenders[i].wall),
+                    errors[i].rms, errors[i].maximum);
+    std::fflush(stdout);
+}
 
 void run_all(std::size_t cells, int side, int frames) {
     const auto grid = std::make_shared<const Grid>(testing_support::unit_cube(cells, scenes::waves));
@@ -101,12 +117,13 @@ void run_all(std::size_t cells, int side, int frames) {
             Run run{grid, transfer, projection, {side, side}, frames, {}};
             run.truths = GridReference(grid, transfer).pixels(view(run, 0), run.size, judged_pixels(run.size));
             std::printf("%s, %s\n", ramp ? "ramp" : "peaks", projection == Camera::Projection::parallel ? "parallel" : "perspective");
-            for (const char* method : {"integral", "exact:1e-3", "exact:1e-5", "homogeneous", "preint3d:64"}) measure_grid(run, method);
+            std::vector<Contender> contenders;
+            for (const char* method : {"integral", "exact:1e-3", "exact:1e-5", "homogeneous"}) contenders.push_back(grid_contender(run, method));
 #if CELLPROJ_BENCH_VTK
-            measure_vtk(run, 1.0);
-            measure_vtk(run, 0.5);
+            for (const double step : {1.0, 0.5}) contenders.push_back(vtk_contender(run, step));
 #endif
-            if (cells <= 64) measure_tets(run);
+            if (cells <= 64) contenders.push_back(tets_contender(run));
+            measure(run, std::move(contenders));
         }
     }
 }

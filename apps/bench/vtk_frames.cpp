@@ -2,7 +2,6 @@
 #include "apps/bench/vtk_frames.hpp"
 
 #include <vtkAutoInit.h>
-#include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkFloatArray.h>
@@ -15,7 +14,6 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridLinearRayIntegrator.h>
 #include <vtkUnstructuredGridPreIntegration.h>
@@ -26,6 +24,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+
+#include "apps/bench/vtk_view.hpp"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2)
@@ -120,30 +120,11 @@ public:
     }
 
     Statistics draw(const Camera& camera) override {
-        vtkCamera* view = renderer_->GetActiveCamera();
-        view->SetPosition(camera.eye.x, camera.eye.y, camera.eye.z);
-        view->SetFocalPoint(camera.center.x, camera.center.y, camera.center.z);
-        view->SetViewUp(camera.up.x, camera.up.y, camera.up.z);
-        view->SetParallelProjection(camera.projection == Camera::Projection::parallel);
-        view->SetParallelScale(0.5 * camera.height);
-        view->SetViewAngle(camera.fov_y_degrees);
-        renderer_->ResetCameraClippingRange();
-        window_->Render();
-        window_->WaitForCompletion();
+        bench::draw(*window_, *renderer_, camera);
         return {};
     }
 
-    Image picture() const override {
-        vtkNew<vtkUnsignedCharArray> bytes;
-        window_->GetPixelData(0, 0, size_.width - 1, size_.height - 1, 0, bytes);
-        Image image(size_.width, size_.height);
-        for (int y = 0; y < size_.height; ++y)
-            for (int x = 0; x < size_.width; ++x) {
-                const vtkIdType at = 3 * (static_cast<vtkIdType>(size_.height - 1 - y) * size_.width + x);
-                for (int k = 0; k < 3; ++k) image.at(x, y)[k] = static_cast<float>(bytes->GetValue(at + k)) / 255.0F;
-            }
-        return image;
-    }
+    Image picture() const override { return picture_of(*window_, size_); }
 
     // The ray casters look through the lower left corner of a pixel, found by comparing their pictures with the reference at shifted
     // places: RMS of vtk-linear, grid:17, ramp, 256²: .0061 at the centres, .0032 at these corners, .006 and more at the others.

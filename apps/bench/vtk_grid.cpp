@@ -2,7 +2,6 @@
 #include "apps/bench/vtk_grid.hpp"
 
 #include <vtkAutoInit.h>
-#include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkFixedPointVolumeRayCastMapper.h>
 #include <vtkFloatArray.h>
@@ -12,11 +11,13 @@
 #include <vtkPointData.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkUnsignedCharArray.h>
 #include <vtkVolume.h>
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "apps/bench/vtk_view.hpp"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2)
@@ -85,30 +86,8 @@ VtkFixedPoint::VtkFixedPoint(const Grid& grid, const TransferFunction& transfer,
 
 VtkFixedPoint::~VtkFixedPoint() = default;
 
-void VtkFixedPoint::draw(const Camera& camera) {
-    vtkCamera* view = parts_->renderer->GetActiveCamera();
-    view->SetPosition(camera.eye.x, camera.eye.y, camera.eye.z);
-    view->SetFocalPoint(camera.center.x, camera.center.y, camera.center.z);
-    view->SetViewUp(camera.up.x, camera.up.y, camera.up.z);
-    view->SetParallelProjection(camera.projection == Camera::Projection::parallel);
-    view->SetParallelScale(0.5 * camera.height);
-    view->SetViewAngle(camera.fov_y_degrees);
-    parts_->renderer->ResetCameraClippingRange();
-    parts_->window->Render();
-    parts_->window->WaitForCompletion();
-}
+void VtkFixedPoint::draw(const Camera& camera) { bench::draw(*parts_->window, *parts_->renderer, camera); }
 
-Image VtkFixedPoint::picture() const {
-    const ImageSize size = parts_->size;
-    vtkNew<vtkUnsignedCharArray> bytes;
-    parts_->window->GetPixelData(0, 0, size.width - 1, size.height - 1, 0, bytes);
-    Image image(size.width, size.height);
-    for (int y = 0; y < size.height; ++y)
-        for (int x = 0; x < size.width; ++x) {
-            const vtkIdType at = 3 * (static_cast<vtkIdType>(size.height - 1 - y) * size.width + x);
-            for (int k = 0; k < 3; ++k) image.at(x, y)[k] = static_cast<float>(bytes->GetValue(at + k)) / 255.0F;
-        }
-    return image;
-}
+Image VtkFixedPoint::picture() const { return picture_of(*parts_->window, parts_->size); }
 
 }  // namespace cellproj::bench

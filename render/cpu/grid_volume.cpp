@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include "mesh/error.hpp"
 
 namespace cellproj::cpu {
@@ -17,6 +19,8 @@ namespace {
 
 constexpr std::size_t brick_side = 4;     // cells, and bricks of the level below
 constexpr std::size_t function_bins = 1024;  // of the scalars, in which the transfer function shows something or not
+
+constexpr std::size_t longest_axis = std::size_t{1} << 24;  // the kernels count cells in float32
 
 // A ray that moves less than this across the whole grid [axis units] crosses no plane: about what float32 places are worth.
 constexpr double no_movement = 1e-6;
@@ -58,6 +62,11 @@ GridVolume::GridVolume(const Grid& grid) : units_(units_of(grid)), constant_(gri
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (n.ni * n.nj * n.nk > most) {
         throw Error({ErrorKind::data, "grid", "at most " + std::to_string(most) + " points", std::to_string(n.ni * n.nj * n.nk),
+                     "resample it, or cut a part out"});
+    }
+    for (const GridAxis& axis : grid.axes) {
+        if (axis.cells() < longest_axis) continue;
+        throw Error({ErrorKind::data, "grid", "fewer than " + std::to_string(longest_axis) + " cells along an axis", std::to_string(axis.cells()),
                      "resample it, or cut a part out"});
     }
     values_.resize(grid.values.size());
@@ -182,40 +191,54 @@ GridCells GridVolume::cells() const {
     return grid;
 }
 
-// In float64: a far eye and a far origin of the coordinates cost the kernels no digits.
+// In float64: a far eye and a far origin of the coordinates cost the kernels no digits. Rays are affine over the screen:
+// in parallel views their origins, in perspective their directions, when these reach equally far along the axis of the view.
 void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int width, int height, GridRays& rays) const {
+    const bool perspective = transform.perspective();
+    const glm::dvec3 forward = transform.ray(transform.principal_point()).direction;
+    const auto ray_at = [&](double px, double py) {
+        const ScreenTransform::Ray ray = transform.ray({x + px, y + py});
+        return perspective ? ray.direction / glm::dot(ray.direction, forward) : ray.origin;
+    };
+    const glm::dvec3 first = ray_at(0.5, 0.5), per_column = (ray_at(width + 0.5, 0.5) - first) / double(width),
+                     per_row = (ray_at(0.5, height + 0.5) - first) / double(height);
+    const glm::dvec3 eye = transform.ray({x + 0.5, y + 0.5}).origin;
     for (int row = 0; row < height; ++row)
         for (int column = 0; column < width; ++column) {
-            const auto pixel = static_cast<std::size_t>(tile_side * row + column);
-            const ScreenTransform::Ray ray = transform.ray({x + column + 0.5, y + row + 0.5});
-            double enter = transform.perspective() ? 0.0 : -std::numeric_limits<double>::infinity();
-            double leave = std::numeric_limits<double>::infinity();
-            for (int a = 0; a < 3; ++a) {
-                const Axis& axis = axes_[static_cast<std::size_t>(a)];
-                const double d = ray.direction[a], to_low = axis.low - ray.origin[a], to_high = axis.high - ray.origin[a];
-                if (d == 0) {
-                    if (to_low > 0 || to_high <= 0) leave = -std::numeric_limits<double>::infinity();
-                    continue;
-                }
-                const double first = (d > 0 ? to_low : to_high) / d, last = (d > 0 ? to_high : to_low) / d;
-                enter = std::max(enter, first);
-                leave = std::min(leave, last);
-            }
-            const double length = (leave - enter) / units_.length;
-            if (!(length > 0)) {
-                rays.length[pixel] = 0;
-                continue;
-            }
-            rays.length[pixel] = static_cast<float>(length);
-            for (int a = 0; a < 3; ++a) {
-                const auto i = static_cast<std::size_t>(a);
-                const Axis& axis = axes_[i];
-                const double place = ((ray.origin[a] - axis.low) + enter * ray.direction[a]) * axis.per_unit;
-                const double change = ray.direction[a] * units_.length * axis.per_unit;
-                rays.origin[i][pixel] = static_cast<float>(std::clamp(place, 0.0, static_cast<double>(cell_counts_[i])));
-                rays.direction[i][pixel] = std::abs(change) * length > no_movement ? static_cast<float>(change) : 0.0F;
-            }
+            const glm::dvec3 place = first + double(column) * per_column + double(row) * per_row;
+            find_ray(perspective ? eye : place, perspective ? place : forward, perspective, static_cast<std::size_t>(tile_side * row + column), rays);
         }
+}
+
+// `direction` of any length.
+void GridVolume::find_ray(const glm::dvec3& origin, const glm::dvec3& direction, bool from_origin, std::size_t pixel, GridRays& rays) const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double enter = from_origin ? 0.0 : -infinity, leave = infinity;
+    for (int a = 0; a < 3; ++a) {
+        const Axis& axis = axes_[static_cast<std::size_t>(a)];
+        const double d = direction[a], to_low = axis.low - origin[a], to_high = axis.high - origin[a];
+        if (d == 0) {
+            if (to_low > 0 || to_high <= 0) leave = -infinity;
+            continue;
+        }
+        const double per_d = 1 / d;
+        enter = std::max(enter, (d > 0 ? to_low : to_high) * per_d);
+        leave = std::min(leave, (d > 0 ? to_high : to_low) * per_d);
+    }
+    if (!(leave > enter)) {
+        rays.length[pixel] = 0;
+        return;
+    }
+    const double speed = glm::length(direction) / units_.length, length = (leave - enter) * speed;
+    rays.length[pixel] = static_cast<float>(length);
+    for (int a = 0; a < 3; ++a) {
+        const auto i = static_cast<std::size_t>(a);
+        const Axis& axis = axes_[i];
+        const double place = ((origin[a] - axis.low) + enter * direction[a]) * axis.per_unit;
+        const double change = direction[a] * axis.per_unit;  // per unit of `enter`
+        rays.origin[i][pixel] = static_cast<float>(std::clamp(place, 0.0, static_cast<double>(cell_counts_[i])));
+        rays.direction[i][pixel] = std::abs(change) * (leave - enter) > no_movement ? static_cast<float>(change / speed) : 0.0F;
+    }
 }
 
 }  // namespace cellproj::cpu

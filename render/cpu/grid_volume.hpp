@@ -46,6 +46,7 @@ private:
     };
 
     void find_ranges(const Grid& grid);
+    void find_ray(const glm::dvec3& origin, const glm::dvec3& direction, bool from_origin, std::size_t pixel, GridRays& rays) const;
 
     GridUnits units_;
     double mean_chord_;

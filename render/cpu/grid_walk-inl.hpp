@@ -45,6 +45,10 @@ public:
             axis.inverse = hn::IfThenElseZero(moves, hn::Div(one, hn::IfThenElse(moves, axis.direction, one)));
             axis.up = hn::IfThenElseZero(up, one);
             axis.step = hn::IfThenElse(up, one, hn::Set(d, -1.0F));
+            const auto upwards = hn::RebindMask(di_, up);
+            const auto stride = [&](std::int32_t n) HWY_ATTR { return hn::IfThenElse(upwards, hn::Set(di_, n), hn::Set(di_, -n)); };
+            axis.next_value = stride(grid.axes[a].value_stride);
+            axis.next_cell = stride(grid.axes[a].cell_stride);
             axis.first = hn::IfThenElse(moves, uniform ? hn::Mul(hn::Sub(axis.up, axis.origin), axis.inverse) : hn::Zero(d), hn::Set(d, never));
             const V last = hn::Set(d, static_cast<float>(grid.axes[a].cells - 1));
             axis.cell = cell_at(a, axis.origin, hn::Zero(d), last);
@@ -81,14 +85,17 @@ public:
         }
         t_ = leave;
         active_ = hn::AndNot(last, active_);
-        const auto move = [&](Axis& axis, M crossed) HWY_ATTR {
-            axis.cell = hn::Add(axis.cell, hn::IfThenElseZero(hn::And(crossed, active_), axis.step));
-        };
-        const M by_z = hn::Not(hn::Or(by_x, by_y));
-        move(axes_[0], by_x);
-        move(axes_[1], by_y);
-        move(axes_[2], by_z);
-        find_ids();
+        VI next_value = hn::Zero(di_), next_cell = hn::Zero(di_);
+        const M crossed[3]{by_x, by_y, hn::Not(hn::Or(by_x, by_y))};
+        for (std::size_t a = 0; a < 3; ++a) {
+            Axis& axis = axes_[a];
+            const M moves = hn::And(crossed[a], active_);
+            axis.cell = hn::Add(axis.cell, hn::IfThenElseZero(moves, axis.step));
+            next_value = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_value, next_value);
+            if (grid_.present) next_cell = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_cell, next_cell);
+        }
+        value_id_ = hn::Add(value_id_, next_value);
+        if (grid_.present) cell_id_ = hn::Add(cell_id_, next_cell);
     }
 
     // Out of bricks that show nothing.
@@ -116,6 +123,7 @@ private:
         V first;                       // uniform: where plane `up` is crossed; otherwise 0; `never` without direction
         V up, step;                    // 1 and 1 towards higher cells, 0 and −1 towards lower ones
         V cell;                        // a whole number
+        VI next_value, next_cell;      // from a cell's ids to those of the next one
     };
 
     // Where the ray crosses the plane ahead, at the end of these cells.
@@ -140,18 +148,13 @@ private:
         return hn::ConvertTo(d_, first);
     }
 
-    // Where in its cell a ray is at t, 0..1.
+    // Where in its cell a ray is at t, 0..1 but for rounding.
     HWY_INLINE V fraction(std::size_t a, V t) const {
         const Axis& axis = axes_[a];
         const V place = hn::MulAdd(t, axis.direction, axis.origin);
-        V share;
-        if constexpr (uniform) {
-            share = hn::Sub(place, axis.cell);
-        } else {
-            const VI cell = hn::ConvertTo(di_, axis.cell);
-            share = hn::Mul(hn::Sub(place, hn::GatherIndex(d_, grid_.axes[a].planes, cell)), hn::GatherIndex(d_, grid_.axes[a].per_width, cell));
-        }
-        return hn::Min(hn::Max(share, hn::Zero(d_)), hn::Set(d_, 1.0F));
+        if constexpr (uniform) return hn::Sub(place, axis.cell);
+        const VI cell = hn::ConvertTo(di_, axis.cell);
+        return hn::Mul(hn::Sub(place, hn::GatherIndex(d_, grid_.axes[a].planes, cell)), hn::GatherIndex(d_, grid_.axes[a].per_width, cell));
     }
 
     HWY_INLINE void find_ids() {
@@ -165,7 +168,7 @@ private:
     }
 
     HWY_INLINE V between(V low, V high, V share) const { return hn::MulAdd(hn::Sub(high, low), share, low); }
-    HWY_INLINE V in_range(V scalar) const { return hn::Min(hn::Max(scalar, hn::Zero(d_)), hn::Set(d_, 1.0F)); }
+    HWY_INLINE V in_unit(V x) const { return hn::Min(hn::Max(x, hn::Zero(d_)), hn::Set(d_, 1.0F)); }
 
     // The bilinear scalar on the face where the ray leaves.
     HWY_INLINE V scalar_at_face(V t, M by_x, M by_y) const {
@@ -177,12 +180,12 @@ private:
         const V up = hn::IfThenElse(by_x, axes_[0].up, hn::IfThenElse(by_y, axes_[1].up, axes_[2].up));
         const VI across = hn::IfThenElse(ix, stride(0), hn::IfThenElse(iy, stride(1), stride(2)));
         const VI first = hn::IfThenElse(ix, stride(1), stride(0)), second = hn::IfThenElse(iz, stride(1), stride(2));
-        const V u = hn::IfThenElse(by_x, uy, ux), v = hn::IfThenElse(by_z, uy, uz);
+        const V u = in_unit(hn::IfThenElse(by_x, uy, ux)), v = in_unit(hn::IfThenElse(by_z, uy, uz));
         const VI corner = hn::Add(value_id_, hn::IfThenElseZero(hn::RebindMask(di_, hn::Gt(up, hn::Zero(d_))), across));
         const VI opposite = hn::Add(corner, second);
         const V low = between(value(corner), value(hn::Add(corner, first)), u);
         const V high = between(value(opposite), value(hn::Add(opposite, first)), u);
-        return in_range(between(low, high, v));
+        return in_unit(between(low, high, v));
     }
 
     HWY_INLINE V value(VI id) const { return hn::GatherIndex(d_, grid_.values, id); }
@@ -201,10 +204,10 @@ private:
         return result;
     }
     HWY_INLINE V interpolate(const Corners& c, V t) const {
-        const V u = fraction(0, t), v = fraction(1, t), w = fraction(2, t);
+        const V u = in_unit(fraction(0, t)), v = in_unit(fraction(1, t)), w = in_unit(fraction(2, t));
         const V low = between(between(c.at[0], c.at[1], u), between(c.at[2], c.at[3], u), v);
         const V high = between(between(c.at[4], c.at[5], u), between(c.at[6], c.at[7], u), v);
-        return in_range(between(low, high, w));
+        return in_unit(between(low, high, w));
     }
     HWY_INLINE V interpolate(V t) const { return interpolate(corners(), t); }
 
@@ -240,7 +243,7 @@ private:
             const V at = hn::MulAdd(hn::MulAdd(hn::MulAdd(cube, t, square), t, slope), t, scalar_);
             const V back = i < parts ? at : next;
             const V mean = hn::Mul(hn::MulAdd(hn::Mul(set(3), cube), middle, square), set(-1.0F / (6 * parts * parts)));
-            push(in_range(hn::Add(front, mean)), in_range(hn::Add(back, mean)), part_length, chunk);
+            push(in_unit(hn::Add(front, mean)), in_unit(hn::Add(back, mean)), part_length, chunk);
             front = back;
         }
     }
