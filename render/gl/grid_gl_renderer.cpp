@@ -43,8 +43,7 @@ void require_grid_drawn(const GridQuality& quality, bool surfaces) {
     const auto refuse = [](const char* option, const char* expected, const std::string& found, const char* advice) {
         throw Error({ErrorKind::option, option, expected, found, advice});
     };
-    if (surfaces)
-        refuse("--iso", "no isosurfaces for a regular grid", "some", "draw the grid as tetrahedra (--as tets)");
+    if (surfaces) refuse("--iso", "no isosurfaces for a regular grid", "some", "draw the grid as tetrahedra (--as tets)");
     // Between two faces the scalar is a cubic; segments of this backend are linear.
     if (quality.method.kind == MethodKind::exact)
         refuse("--method", "one that OpenGL draws for a regular grid", to_string(quality.method),
@@ -56,7 +55,8 @@ void require_grid_drawn(const GridQuality& quality, bool surfaces) {
         refuse("--method", "a method of light per pixel for slabs", to_string(quality.method), "use cells (--sampling cells)");
 }
 
-GlGridRenderer::GlGridRenderer(OsmesaContext context) : context_(current(std::move(context))), 
+GlGridRenderer::GlGridRenderer(OsmesaContext context)
+    : context_(current(std::move(context))),
       indices_(0, {}),
       pairs_(make_triangle_stream<TemplatePair>()),
       slabs_(make_triangle_stream<SlabVertex>()) {}
