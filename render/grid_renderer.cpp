@@ -3,23 +3,33 @@
 
 #include "mesh/error.hpp"
 #include "render/cpu/cpu_grid_renderer.hpp"
+#include "render/gl/egl_context.hpp"
+#include "render/gl/grid_gl_renderer.hpp"
+#include "render/gl/osmesa_context.hpp"
 
 namespace cellproj {
 
 void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfaces) {
+    if (backend != Backend::cpu) return gl::require_grid_drawn(quality, surfaces);
     const auto refuse = [](const char* option, const char* expected, const std::string& found, const char* advice) {
         throw Error({ErrorKind::option, option, expected, found, advice});
     };
     const char* as_tets = "draw the grid as tetrahedra (--as tets)";
-    if (backend != Backend::cpu) refuse("--backend", "the CPU backend for a regular grid", "gl", "use --backend cpu, or draw the grid as tetrahedra (--as tets)");
     if (light_at_vertices(quality.method))
         refuse("--method", "a method of light per pixel for a regular grid", to_string(quality.method), as_tets);
     if (quality.target != TargetFormat::rgba32f) refuse("--target", "rgba32f for a regular grid", to_string(quality.target), as_tets);
+    if (quality.sampling.cut != GridSampling::Cut::cells)
+        refuse("--sampling", "cells for a regular grid on the CPU", to_string(quality.sampling), "use the OpenGL backend (--backend gl)");
     if (surfaces) refuse("--iso", "no isosurfaces for a regular grid", "some", as_tets);
 }
 
 std::unique_ptr<GridRenderer> make_grid_renderer(Backend backend, const RendererOptions& options) {
-    require_grid_drawn(backend, {}, false);
+    switch (backend) {
+        case Backend::gl_osmesa:
+            return std::make_unique<gl::GlGridRenderer>(std::make_unique<gl::OsmesaContext>(options.osmesa_library));
+        case Backend::gl_egl: return std::make_unique<gl::GlGridRenderer>(std::make_unique<gl::EglContext>(options.egl_library));
+        case Backend::cpu: break;
+    }
     return cpu::make_grid_renderer(options.threads);
 }
 

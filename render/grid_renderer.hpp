@@ -8,6 +8,7 @@
 
 #include "classify/method.hpp"
 #include "project/camera.hpp"
+#include "render/grid_sampling.hpp"
 #include "render/grid_scene.hpp"
 #include "render/image.hpp"
 #include "render/renderer.hpp"
@@ -20,6 +21,7 @@ namespace cellproj {
 struct GridQuality {
     Method method = {};                           // how a segment becomes light
     TargetFormat target = TargetFormat::rgba32f;  // what cells are blended in
+    GridSampling sampling = {};                   // what cuts rays into segments; slabs are OpenGL's
 };
 
 // A renderer keeps what does not depend on the view for the scene it drew last. Not thread-safe: one thread at a time.

@@ -77,9 +77,21 @@ TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
         std::filesystem::remove(folder_ / "p.png");
         expect_refused(std::string(voxels) + " --as grid " + option, {"regular grid", "--as tets"});
     }
-    for (const char* option : {"--backend gl", "--target rgba8", "--method shirley-tuchman", "--opacity-field Points:x"})
+    for (const char* option : {"--target rgba8", "--method shirley-tuchman", "--opacity-field Points:x"})
         expect_refused(std::string(voxels) + " --as grid " + option, {"regular grid", "--as tets"});
     EXPECT_EQ(run(std::string(voxels) + " --as boxes").code, 2);
+}
+
+TEST_F(GridCommand, OpenGlDrawsCellsAndSlabs) {
+    for (const char* option : {"--backend gl", "--backend gl --method homogeneous:vertices --target rgba16f", "--sampling object:8",
+                               "--sampling view:9:post:x2 --method preint2d --as grid"})
+        EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "grid") << option;
+    std::filesystem::remove(folder_ / "p.png");
+    expect_refused(std::string(voxels) + " --sampling object:8 --backend cpu", {"--sampling", "--backend gl"});
+    expect_refused(std::string(voxels) + " --sampling object:8 --as tets", {"--sampling", "tetrahedra"});
+    expect_refused(std::string(voxels) + " --sampling object:8 --iso 20", {"--iso"});
+    expect_refused(std::string(voxels) + " --sampling objects:8", {"--sampling", "did you mean \"object\""});
+    expect_refused(std::string(voxels) + " --as grid --backend gl --method exact", {"--method", "exact"});
 }
 
 TEST_F(GridCommand, BadGridsAreRefusedWithTheirPlace) {

@@ -26,7 +26,7 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
     if (wishes.named_order) refuse("--order", "auto for a regular grid, whose cells need no sorting", "another order");
     if (wishes.quality.check_rays > 0) refuse("--verify-order", "a mesh, whose cells are sorted", "a regular grid");
     if (wishes.measured_method) refuse("--max-error", "--method for a regular grid, such as exact:1e-3", "--max-error");
-    require_grid_drawn(wishes.backend, {wishes.quality.method, wishes.quality.target}, options.iso.any());
+    require_grid_drawn(wishes.backend, {wishes.quality.method, wishes.quality.target, wishes.sampling}, options.iso.any());
 }
 
 }  // namespace
@@ -39,22 +39,26 @@ void add_grid_options(CLI::App& command, SceneOptions& options) {
         ->check(CLI::IsMember(names))->default_str("auto");
 }
 
-ChosenBackend choose_grid_backend(BackendWish wish, const Gpu& gpu) {
-    if (wish == BackendWish::automatic) return {Backend::cpu, {"backend", "cpu", "the cells of a regular grid need no projection: rays walk from one to the next"}};
+ChosenBackend choose_grid_backend(BackendWish wish, const GridSampling& sampling, const Gpu& gpu) {
+    const bool slabs = sampling.cut != GridSampling::Cut::cells;
+    if (wish == BackendWish::automatic && !slabs) return {Backend::cpu, {"backend", "cpu", "the cells of a regular grid need no projection: rays walk from one to the next"}};
     if (wish == BackendWish::cpu) return {Backend::cpu, {"backend", "cpu", "asked for"}};
-    const Backend backend = wished_backend(wish, {}, FieldsRead::one, gpu);
-    return {backend, {"backend", backend == Backend::gl_egl ? "gl_egl" : "gl_osmesa", "OpenGL was asked for"}};
+    const Backend backend = wished_backend(wish == BackendWish::automatic ? BackendWish::gl : wish, {}, FieldsRead::one, gpu);
+    return {backend, {"backend", backend == Backend::gl_egl ? "gl_egl" : "gl_osmesa", wish == BackendWish::automatic ? "it draws slabs" : "OpenGL was asked for"}};
 }
 
 DrawnAs choose_drawn_as(const SceneOptions& options, const PictureWishes& wishes) {
+    const bool slabs = wishes.sampling.cut != GridSampling::Cut::cells;
+    if (slabs && options.drawn_as == DrawnAs::tets)
+        throw Error({ErrorKind::option, "--sampling", "cells for tetrahedra", to_string(wishes.sampling), "leave it out, or --as tets"});
     if (options.drawn_as == DrawnAs::tets) return DrawnAs::tets;
     try {
         require_grid_options(options, wishes);
     } catch (const Error&) {
-        if (options.drawn_as == DrawnAs::grid) throw;
+        if (slabs || options.drawn_as == DrawnAs::grid) throw;
         return DrawnAs::tets;
     }
-    return options.drawn_as;
+    return slabs ? DrawnAs::grid : options.drawn_as;
 }
 
 }  // namespace cellproj::cli

@@ -23,14 +23,16 @@ void add_grid_options(CLI::App& command, SceneOptions& options);
 struct PictureWishes {
     Backend backend;  // of a grid
     Quality quality;
+    GridSampling sampling;  // of a grid
     bool measured_method;  // --max-error
     bool named_order;      // --order, but for auto
 };
 
-// The backend of grids: rays on the CPU, unless OpenGL was asked for.
-ChosenBackend choose_grid_backend(BackendWish wish, const Gpu& gpu);
+// The backend of grids: rays on the CPU, unless OpenGL was asked for, or slabs, which it alone draws.
+ChosenBackend choose_grid_backend(BackendWish wish, const GridSampling& sampling, const Gpu& gpu);
 
-// --as auto becomes tets where grids do not know something that was asked for. Throws Error (option) where --as grid was.
+// --as auto becomes tets where grids do not know something that was asked for. Throws Error (option) where --as grid was, or slabs were,
+// which tetrahedra do not know.
 DrawnAs choose_drawn_as(const SceneOptions& options, const PictureWishes& wishes);
 
 }  // namespace cellproj::cli

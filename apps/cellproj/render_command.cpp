@@ -32,7 +32,7 @@ struct RenderOptions {
     SceneOptions scene;
     AnnotationOptions annotations;
     std::filesystem::path output, stats;
-    std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto";
+    std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto", sampling = "cells";
     std::string iso_method = to_string(SurfaceMethod{});
     std::optional<double> max_error;  // --max-error: the method is chosen by measuring
     bool verify_order = false, explain = false;
@@ -191,11 +191,12 @@ void render_pictures(const RenderOptions& options) {
                     .surfaces = parse_surface_method(options.iso_method, "--iso-method"),
                     .check_rays = options.verify_order ? rays_of_proof : 0};
     const FieldsRead fields = options.scene.fields();
+    const GridSampling sampling = parse_grid_sampling(options.sampling, "--sampling");
     const BackendWish wish = parse_backend(options.backend);
     const Gpu gpu = depends_on_gpu(wish) ? find_gpu() : Gpu{};
-    const ChosenBackend grid_backend = choose_grid_backend(wish, gpu);
+    const ChosenBackend grid_backend = choose_grid_backend(wish, sampling, gpu);
     const DrawnAs drawn_as =
-        choose_drawn_as(options.scene, {grid_backend.backend, quality, options.max_error.has_value(), options.order != "auto"});
+        choose_drawn_as(options.scene, {grid_backend.backend, quality, sampling, options.max_error.has_value(), options.order != "auto"});
     const ChosenBackend mesh_backend = drawn_as == DrawnAs::grid ? grid_backend : choose_backend(wish, quality, fields, gpu);
     require_writable_image(options.output);
     const std::shared_ptr<const Font> font = require_annotated(options.annotations, options.output, size);
@@ -215,7 +216,7 @@ void render_pictures(const RenderOptions& options) {
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
     const auto renderer = loaded.grid ? nullptr : make_renderer(mesh_backend.backend, {.threads = options.threads});
     const auto grid_renderer = loaded.grid ? make_grid_renderer(grid_backend.backend, {.threads = options.threads}) : nullptr;
-    const GridQuality grid_quality{quality.method, quality.target};
+    const GridQuality grid_quality{quality.method, quality.target, sampling};
     std::optional<double> error;  // of the first view
     if (options.max_error && renderer)
         quality = choose_measured(*renderer, mesh_backend.backend, scene, views, view, *options.max_error, quality, error.emplace());
@@ -283,6 +284,10 @@ void add_render_command(CLI::App& app) {
         ->expected(3)->delimiter(',')->check(CLI::Range(0.0, 1.0))->capture_default_str();
     command->add_option("--bits", options->bits, "Bits per channel of a PNG: 8 or 16")
         ->check(CLI::IsMember({8, 16}))->capture_default_str();
+    command->add_option("--sampling", options->sampling,
+                        "What cuts rays through a regular grid: cells, or slabs between slices by OpenGL: object:N or view:N, "
+                        "behind that :pre or :post shaded, :xM slabs a polygon (render/README.md)")
+        ->capture_default_str();
     CLI::Option* method = command->add_option("--method", options->method, "How a ray's piece in a cell becomes light: NAME[:CHOICE…] (classify/README.md)")
         ->capture_default_str();
     command->add_option("--max-error", options->max_error,

@@ -4,6 +4,7 @@
 #include <glad/gl.h>
 
 #include <mutex>
+#include <utility>
 
 #include "mesh/error.hpp"
 
@@ -16,6 +17,11 @@ std::mutex loading;
 const void* loaded_from = nullptr;
 
 }  // namespace
+
+std::unique_ptr<Context> current(std::unique_ptr<Context> context) {
+    context->make_current();
+    return context;
+}
 
 void Context::make_current() {
     bind();

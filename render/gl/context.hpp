@@ -4,6 +4,7 @@
 // made and not linked: without them the program still starts, and says what is missing.
 #pragma once
 
+#include <memory>
 #include <string>
 
 namespace cellproj::gl {
@@ -32,6 +33,9 @@ private:
     virtual void bind() = 0;
     virtual Loader loader() const = 0;
 };
+
+// Made current: for members of whoever owns it that are OpenGL objects.
+std::unique_ptr<Context> current(std::unique_ptr<Context> context);
 
 // Current as long as this lives.
 class CurrentContext {

@@ -24,24 +24,11 @@ constexpr std::size_t cells_per_chunk = 16384;
 // In scene units, where half the diagonal of the mesh's box is 1: no segment is longer than the diagonal.
 constexpr double longest_segment = 2.0;
 
-// The context must be current before the members that are OpenGL objects are made.
-std::unique_ptr<Context> current(std::unique_ptr<Context> context) {
-    context->make_current();
-    return context;
-}
-
 // The nearest surface alone: what is nearer has a larger depth (shaders/surfaces.frag), and nothing has 0.
 void set_depth_test() {
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
-}
-
-void set_blending() {
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // associated colours, back to front
 }
 
 // Segments that are taken back (project/silhouette.hpp) leave what is below nothing by their rounding.
@@ -58,10 +45,6 @@ void set_camera(const Program& program, const CellStream& cells) {
     program.set("principal_point", static_cast<float>(center.x), static_cast<float>(center.y));
     program.set("inverse_near", static_cast<float>(1.0 / cells.near_depth()));
     program.set("pixels_per_unit", static_cast<float>(cells.transform().pixels_per_unit()));
-}
-
-const char* blending_define(const Method& method) {
-    return method.blending == Blending::half ? "#define HALF_OPACITY\n" : "";
 }
 
 // Projects chunks of the order into batches, each of which is drawn while the next one is projected.
@@ -163,13 +146,6 @@ void GlRenderer::prepare_surfaces(const Scene& scene, const Quality& quality) {
     surfaces_ = std::make_unique<SurfacePass>(*prepared_, quality.surfaces);
 }
 
-const Program& GlRenderer::program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
-    const std::string key = defines + vertex + fragment;
-    const auto known = programs_.find(key);
-    if (known != programs_.end()) return known->second;
-    return programs_[key] = Program(vertex, fragment, defines);
-}
-
 Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality,
                          Statistics* out) {
     Statistics statistics;
@@ -206,7 +182,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     }
     statistics.ms.project = transform.ms();
     target_.clear_and_bind();
-    nearest ? set_depth_test() : set_blending();
+    nearest ? set_depth_test() : blend_back_to_front();
     if (surfaces_) {
         draw_surfaces(cells, order, nearest, statistics);
     } else {
@@ -256,7 +232,7 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
     const bool perspective = cells.transform().perspective();
     const bool two_fields = fields_read(prepared_->scene()) == FieldsRead::two;
     const Program& segments =
-        program(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shaders::light_glsl + shader_->source(),
+        programs_.of(shaders::cell_vert + shader_->vertex_source(), shaders::cell_frag + shaders::light_glsl + shader_->source(),
                 std::string(perspective ? "#define PERSPECTIVE\n" : "") + (two_fields ? "#define TWO_FIELDS\n" : "") +
                     (windows_ ? "#define WINDOW\n" : "") + blending_define(method_));
     if (perspective) set_camera(segments, cells);
@@ -275,7 +251,7 @@ void GlRenderer::draw_segments(const CellStream& cells, const ViewOrder& order, 
 void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, bool nearest, Statistics& statistics) {
     const NearnessFrame frame = cells.nearness_frame();
     const bool medium = prepared_->has_medium();
-    const Program& surfaces = program(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
+    const Program& surfaces = programs_.of(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
                                       shaders::surfaces_frag + (medium ? shaders::light_glsl + shader_->source() : ""),
                                       surfaces_->defines(frame.perspective, nearest) + (windows_ ? "#define WINDOW\n" : ""));
     surfaces_->bind(surfaces, cells, frame, {.nearest = nearest, .windowed = windows_.has_value()});
@@ -288,7 +264,7 @@ void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, 
 }
 
 void GlRenderer::draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics) {
-    program(shaders::lit_vert, shaders::lit_frag, blending_define(method_)).use();
+    programs_.of(shaders::lit_vert, shaders::lit_frag, blending_define(method_)).use();
     draw<LitVertex>(lit_, order, statistics,
                     [&](const ViewOrder& chunk, LitBatch& batch) { cells.project(chunk, *lighting_, batch); });
 }

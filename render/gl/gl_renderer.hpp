@@ -4,15 +4,14 @@
 // buffers in chunks, so that the projection of one chunk overlaps the drawing of those before it.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "classify/vertex_light.hpp"
 #include "render/cell_stream.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/objects.hpp"
+#include "render/gl/programs.hpp"
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/surface_pass.hpp"
 #include "render/gl/triangle_stream.hpp"
@@ -38,13 +37,12 @@ private:
     void prepare_surfaces(const Scene& scene, const Quality& quality);
     ViewOrder find_order(const Plan& plan, const Camera& camera, ImageSize size, const Quality& quality, OrderReport& report);
     void describe(Statistics& statistics, const Quality& quality, const Plan& plan) const;
-    const Program& program(const std::string& vertex, const std::string& fragment, const std::string& defines);
     void draw_segments(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
     void draw_lit(const CellStream& cells, const ViewOrder& order, Statistics& statistics);
     void draw_surfaces(const CellStream& cells, const ViewOrder& order, bool nearest, Statistics& statistics);
 
     std::unique_ptr<Context> context_;  // current during calls only
-    std::map<std::string, Program> programs_;  // by their text
+    Programs programs_;
     TriangleStream segments_, two_field_segments_, lit_, surface_segments_;
     Target target_;
     PlanRules rules_;

@@ -151,8 +151,19 @@ void Program::set(const char* uniform, float x, float y) const {
     glProgramUniform2f(program_.name(), location(uniform), x, y);
 }
 
+void Program::set(const char* uniform, const glm::vec3& value) const {
+    glProgramUniform3f(program_.name(), location(uniform), value.x, value.y, value.z);
+}
+
 void Program::set(const char* uniform, const glm::vec4& value) const {
     glProgramUniform4f(program_.name(), location(uniform), value.x, value.y, value.z, value.w);
+}
+
+void blend_back_to_front() {
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 }
 
 void check_errors(const char* where) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "project/camera.hpp"
@@ -87,12 +88,16 @@ public:
     void use() const;
     void set(const char* uniform, float value) const;  // asserts that the uniform exists
     void set(const char* uniform, float x, float y) const;
+    void set(const char* uniform, const glm::vec3& value) const;
     void set(const char* uniform, const glm::vec4& value) const;
 
 private:
     int location(const char* uniform) const;
     Object<delete_program> program_;
 };
+
+// The blending of associated colours, back to front, without a depth test.
+void blend_back_to_front();
 
 // Throws Error (environment) when an OpenGL call since the last check failed; `where` says what was being done.
 void check_errors(const char* where);

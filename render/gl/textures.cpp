@@ -3,9 +3,12 @@
 
 #include <glad/gl.h>
 
+#include <algorithm>
 #include <cassert>
+#include <string>
 
 #include "classify/table_encoding.hpp"
+#include "mesh/error.hpp"
 
 namespace cellproj::gl {
 
@@ -54,6 +57,27 @@ Texture Texture::table_3d(int size, TableStorage storage, std::span<const float>
     glTextureSubImage3D(name, 0, 0, 0, 0, size, size, size, GL_RGBA, GL_FLOAT, texels.data());
     texture.bytes_ = texels.size() / 4 * bytes_per_texel(storage);
     check_errors("uploading a 3D table");
+    return texture;
+}
+
+Texture Texture::volume(std::array<std::size_t, 3> size, std::span<const float> texels) {
+    const std::size_t components = texels.size() / (size[0] * size[1] * size[2]);
+    assert(texels.size() == components * size[0] * size[1] * size[2] && (components == 1 || components == 4));
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
+    const std::size_t longest = std::max({size[0], size[1], size[2]});
+    if (longest > static_cast<std::size_t>(largest)) {
+        throw Error({ErrorKind::option, "grid", "at most " + std::to_string(largest) + " values along an axis with this driver",
+                     std::to_string(longest), "use the CPU backend (--backend cpu)"});
+    }
+    const GLuint name = make_table(GL_TEXTURE_3D);
+    Texture texture;
+    texture.texture_ = Object<delete_texture>(name);
+    const auto extent = [&](std::size_t axis) { return static_cast<GLsizei>(size[axis]); };
+    glTextureStorage3D(name, 1, components == 1 ? GL_R32F : GL_RGBA32F, extent(0), extent(1), extent(2));
+    glTextureSubImage3D(name, 0, 0, 0, 0, extent(0), extent(1), extent(2), components == 1 ? GL_RED : GL_RGBA, GL_FLOAT, texels.data());
+    texture.bytes_ = texels.size_bytes();
+    check_errors("uploading a volume");
     return texture;
 }
 

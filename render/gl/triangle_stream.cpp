@@ -75,19 +75,20 @@ TriangleStream::~TriangleStream() {
     for (void* fence : in_use_) glDeleteSync(static_cast<GLsync>(fence));
 }
 
-void TriangleStream::draw(std::span<const std::byte> vertices, std::span<const std::uint32_t> indices) {
+void TriangleStream::draw(std::span<const std::byte> vertices, std::span<const std::uint32_t> indices, Primitive primitive) {
     if (indices.empty()) return;
-    const std::size_t vertex_count = vertices.size() / vertex_bytes_;
+    const std::size_t vertex_count = vertices.empty() ? 0 : vertices.size() / vertex_bytes_;
     if (vertex_count > slot_vertices_ || indices.size() > slot_indices_) grow(vertex_count, indices.size());
     const std::size_t slot = next_;
     next_ = (next_ + 1) % slots;
     wait(slot);
     const std::size_t first_vertex = slot * slot_vertices_;
     const std::size_t first_index = slot * slot_indices_;
-    std::memcpy(vertices_->memory().data() + first_vertex * vertex_bytes_, vertices.data(), vertices.size());
+    if (!vertices.empty())
+        std::memcpy(vertices_->memory().data() + first_vertex * vertex_bytes_, vertices.data(), vertices.size());
     std::memcpy(indices_->memory().data() + first_index * sizeof(std::uint32_t), indices.data(), indices.size_bytes());
     glBindVertexArray(layout_.name());
-    glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(indices.size()), GL_UNSIGNED_INT,
+    glDrawElementsBaseVertex(primitive == Primitive::points ? GL_POINTS : GL_TRIANGLES, static_cast<GLsizei>(indices.size()), GL_UNSIGNED_INT,
                              reinterpret_cast<const void*>(first_index * sizeof(std::uint32_t)),
                              static_cast<GLint>(first_vertex));
     in_use_[slot] = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -98,10 +99,12 @@ void TriangleStream::grow(std::size_t vertices, std::size_t indices) {
     for (std::size_t slot = 0; slot < slots; ++slot) wait(slot);
     slot_vertices_ = std::max(slot_vertices_, vertices + vertices / 4);
     slot_indices_ = std::max(slot_indices_, indices + indices / 4);
-    vertices_ = std::make_unique<MappedBuffer>(slots * slot_vertices_ * vertex_bytes_);
     indices_ = std::make_unique<MappedBuffer>(slots * slot_indices_ * sizeof(std::uint32_t));
-    glVertexArrayVertexBuffer(layout_.name(), vertex_binding, vertices_->name(), 0,
-                              static_cast<GLsizei>(vertex_bytes_));
+    if (slot_vertices_ > 0) {
+        vertices_ = std::make_unique<MappedBuffer>(slots * slot_vertices_ * vertex_bytes_);
+        glVertexArrayVertexBuffer(layout_.name(), vertex_binding, vertices_->name(), 0,
+                                  static_cast<GLsizei>(vertex_bytes_));
+    }
     glVertexArrayElementBuffer(layout_.name(), indices_->name());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Batches of triangles to the driver through a ring of mapped buffers.
+// Batches of triangles to the driver through a ring of mapped buffers; or of indices alone, from which the vertex shader finds
+// everything itself (gl_VertexID).
 #pragma once
 
 #include <array>
@@ -30,6 +31,7 @@ std::span<const VertexAttribute> vertex_attributes(const SurfaceVertex*);
 
 class TriangleStream {
 public:
+    // No bytes and no attributes: for draw_indices alone.
     TriangleStream(std::size_t vertex_bytes, std::span<const VertexAttribute> attributes);
     ~TriangleStream();
     TriangleStream(const TriangleStream&) = delete;
@@ -42,9 +44,15 @@ public:
         assert(sizeof(Vertex) == vertex_bytes_);
         draw(std::as_bytes(std::span(batch.vertices)), batch.indices);
     }
+    enum class Primitive { triangles, points };
+    void draw_indices(std::span<const std::uint32_t> indices, Primitive primitive) {
+        assert(vertex_bytes_ == 0);
+        draw({}, indices, primitive);
+    }
 
 private:
-    void draw(std::span<const std::byte> vertices, std::span<const std::uint32_t> indices);
+    void draw(std::span<const std::byte> vertices, std::span<const std::uint32_t> indices,
+              Primitive primitive = Primitive::triangles);
     void grow(std::size_t vertices, std::size_t indices);
     void wait(std::size_t slot);
 

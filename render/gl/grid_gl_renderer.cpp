@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/gl/grid_gl_renderer.hpp"
+
+#include <glad/gl.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "classify/segment_method.hpp"
+#include "mesh/error.hpp"
+#include "render/gl/grid_footprints.hpp"
+#include "render/gl/grid_slabs.hpp"
+#include "render/gl/grid_templates.hpp"
+#include "render/gl/grid_traversal.hpp"
+#include "render/gl/grid_view.hpp"
+#include "render/gl/shaders.hpp"
+
+namespace cellproj::gl {
+
+namespace {
+
+constexpr std::size_t cells_per_chunk = 16384;
+
+constexpr unsigned int values_unit = 8;  // behind those of the methods (segment_shader.hpp)
+
+// What of a grid slices can show: a texture interpolates values on points, evenly spaced, all of them there.
+void require_sliced(const Grid& grid, const GridSampling& sampling) {
+    const auto refuse = [&](const char* expected, const char* found) {
+        throw Error({ErrorKind::option, "--sampling", std::string(expected) + " for " + to_string(sampling), found, "use cells"});
+    };
+    if (grid.location != FieldLocation::points) refuse("values on points", "values on cells");
+    if (!grid.blanked.empty()) refuse("a grid without blanked cells", "some");
+    for (const GridAxis& axis : grid.axes) {
+        if (!axis.spacing) refuse("uniform axes", "a rectilinear grid");
+    }
+}
+
+}  // namespace
+
+void require_grid_drawn(const GridQuality& quality, bool surfaces) {
+    const auto refuse = [](const char* option, const char* expected, const std::string& found, const char* advice) {
+        throw Error({ErrorKind::option, option, expected, found, advice});
+    };
+    if (surfaces) refuse("--iso", "no isosurfaces for a regular grid", "some", "draw the grid as tetrahedra (--as tets)");
+    // Between two faces the scalar is a cubic; segments of this backend are linear.
+    if (quality.method.kind == MethodKind::exact)
+        refuse("--method", "one that OpenGL draws for a regular grid", to_string(quality.method),
+               "use the CPU backend (--backend cpu), or integral");
+    if (quality.method.kind == MethodKind::shirley_tuchman)
+        refuse("--method", "one that OpenGL draws for a regular grid", to_string(quality.method),
+               "use homogeneous:vertices, or draw the grid as tetrahedra (--as tets)");
+    if (quality.sampling.cut != GridSampling::Cut::cells && light_at_vertices(quality.method))
+        refuse("--method", "a method of light per pixel for slabs", to_string(quality.method), "use cells (--sampling cells)");
+}
+
+GlGridRenderer::GlGridRenderer(std::unique_ptr<Context> context)
+    : context_(current(std::move(context))),
+      indices_(0, {}),
+      pairs_(make_triangle_stream<TemplatePair>()),
+      slabs_(make_triangle_stream<SlabVertex>()) {
+    context_->release();
+}
+
+// The OpenGL objects below are deleted in their own context, which goes last.
+GlGridRenderer::~GlGridRenderer() { context_->make_current(); }
+
+void GlGridRenderer::prepare(const GridScene& scene, const GridQuality& quality) {
+    const CurrentContext current(*context_);
+    prepare_here(scene, quality);
+}
+
+void GlGridRenderer::prepare_here(const GridScene& scene, const GridQuality& quality) {
+    gl::require_grid_drawn(quality, has_surfaces(scene));
+    if (quality.sampling.cut != GridSampling::Cut::cells) require_sliced(*scene.grid, quality.sampling);
+    const bool same_grid = volume_ && scene_.grid == scene.grid;
+    const bool same_transfer = same_grid && scene_.transfer == scene.transfer;
+    if (!same_grid) {
+        volume_.reset();  // none of another scene behind a failure
+        shader_.reset();
+        validate(scene);
+        volume_.emplace(scene);
+    } else if (!same_transfer) {
+        volume_->set_transfer(*scene.grid, *scene.transfer);
+    }
+    scene_ = scene;
+    const bool same_light = quality_.method == quality.method && quality_.sampling == quality.sampling;
+    if (!same_transfer || !shader_ || !same_light) prepare_light(quality, same_grid);
+}
+
+// Slabs: what most of them are that look along their normal, and the diagonal of the box, as slices may be seen edge-on.
+GlGridRenderer::Lengths GlGridRenderer::segment_lengths(const GridSampling& sampling) const {
+    if (sampling.cut == GridSampling::Cut::cells) return {volume_->mean_chord(), volume_->longest_chord()};
+    double thickest = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        thickest = std::max(thickest, slab_thickness(*scene_.grid, volume_->units(), sampling, axis));
+    return {thickest, 2.0};
+}
+
+void GlGridRenderer::prepare_light(const GridQuality& quality, bool same_grid) {
+    const GridUnits& units = volume_->units();
+    const TransferFunction transfer = in_scene_units(*scene_.transfer, units.scalar_low, units.scalar_high, units.length);
+    auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
+    classified_ = {};
+    const bool keeps = shader && same_grid && quality_.method == quality.method && quality_.sampling == quality.sampling;
+    if (!keeps || !shader->update(transfer)) {
+        shader.reset();  // its memory first
+        const Lengths lengths = segment_lengths(quality.sampling);
+        shader = make_segment_shader(quality.method, transfer, FieldsRead::one, lengths.longest, lengths.mean);
+    }
+    if (quality.sampling.light == GridSampling::Light::pre) classified_ = volume_->classified(*scene_.grid, transfer);
+    shader_ = std::move(shader);
+    quality_ = quality;
+}
+
+Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality,
+                             Statistics* out) {
+    Statistics statistics;
+    const Stopwatch total;
+    cellproj::validate(camera, "camera");
+    cellproj::validate(size, "size");
+    const CurrentContext current(*context_);
+    prepare_here(scene, quality);
+    if (!target_.is(size, quality.target, false)) target_ = Target(size, quality.target, false);
+    statistics.ms.plan = total.ms();
+
+    target_.clear_and_bind();
+    blend_back_to_front();
+    const GridView view(*scene.grid, volume_->units(), camera, size);
+    volume_->values().bind(values_unit);
+    const bool cells = quality.sampling.cut == GridSampling::Cut::cells;
+    cells ? draw_cells(view, camera, statistics) : draw_slabs(view, statistics);
+
+    const Stopwatch read_back;
+    Image image = target_.read();
+    check_errors("drawing");
+    statistics.ms.read_back = read_back.ms();
+    statistics.ms.total = total.ms();
+    if (!out) return image;
+    statistics.counts.cells = scene.grid->cell_count();
+    statistics.counts.culled = statistics.counts.cells - statistics.counts.drawn;
+    statistics.drawn_as = "grid";
+    statistics.method = to_string(quality.method);
+    statistics.target = to_string(quality.target);
+    statistics.table_bytes = shader_->table_bytes();
+    statistics.backend = context_->name();
+    statistics.backend_version = driver_version();
+    statistics.order = cells ? "slices" : to_string(quality.sampling);
+    statistics.order_exact = true;
+    *out = std::move(statistics);
+    return image;
+}
+
+void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, Statistics& statistics) {
+    const std::string blending = blending_define(quality_.method);
+    GridFootprints footprints(view, *shader_, programs_, blending, indices_);
+    std::optional<GridTemplates> templates;
+    if (light_at_vertices(quality_.method))
+        templates.emplace(view, volume_->units(), *shader_, programs_, blending, footprints, indices_, pairs_);
+
+    GridTraversal traversal(*scene_.grid, camera.viewpoint(), volume_->drawn());
+    std::vector<std::uint32_t> cells;
+    for (;;) {
+        const Stopwatch ordering;
+        traversal.next(cells_per_chunk, cells);
+        statistics.ms.sort += ordering.ms();
+        if (cells.empty()) break;
+        const Stopwatch drawing;
+        statistics.counts.triangles += templates ? templates->draw(cells) : footprints.draw(cells);
+        statistics.counts.drawn += cells.size();
+        statistics.ms.draw += drawing.ms();
+    }
+    const Stopwatch finish;
+    glFinish();
+    statistics.ms.draw += finish.ms();
+}
+
+void GlGridRenderer::draw_slabs(const GridView& view, Statistics& statistics) {
+    const Stopwatch drawing;
+    statistics.counts.triangles = gl::draw_slabs(view, volume_->units(), quality_.sampling, *shader_, classified_, programs_,
+                                                 blending_define(quality_.method), slabs_);
+    statistics.counts.drawn = scene_.grid->cell_count();
+    glFinish();
+    statistics.ms.draw = drawing.ms();
+}
+
+}  // namespace cellproj::gl

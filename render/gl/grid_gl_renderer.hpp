@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Regular grids through OpenGL, after Wilhelms and Van Gelder, "A Coherent Projection Approach for Direct Volume Rendering", 1991.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "project/camera.hpp"
+#include "render/gl/context.hpp"
+#include "render/gl/grid_view.hpp"
+#include "render/gl/grid_volume.hpp"
+#include "render/gl/objects.hpp"
+#include "render/gl/programs.hpp"
+#include "render/gl/segment_shader.hpp"
+#include "render/gl/triangle_stream.hpp"
+#include "render/grid_renderer.hpp"
+
+namespace cellproj::gl {
+
+// Throws Error (option) for what this backend does not draw of grids.
+void require_grid_drawn(const GridQuality& quality, bool surfaces);
+
+class GlGridRenderer : public GridRenderer {
+public:
+    explicit GlGridRenderer(std::unique_ptr<Context> context);
+    ~GlGridRenderer() override;
+
+    void prepare(const GridScene& scene, const GridQuality& quality) override;
+    Image render(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality,
+                 Statistics* statistics) override;
+
+private:
+    void prepare_here(const GridScene& scene, const GridQuality& quality);
+    void prepare_light(const GridQuality& quality, bool same_grid);
+    struct Lengths {
+        double mean, longest;  // of segments [scene units]
+    };
+    Lengths segment_lengths(const GridSampling& sampling) const;
+    void draw_cells(const GridView& view, const Camera& camera, Statistics& statistics);
+    void draw_slabs(const GridView& view, Statistics& statistics);
+
+    std::unique_ptr<Context> context_;  // current during calls only
+    Programs programs_;
+    TriangleStream indices_, pairs_, slabs_;
+    Target target_;
+    GridScene scene_;
+    std::optional<GridVolume> volume_;
+    GridQuality quality_;
+    // Of quality_, for the prepared scene.
+    std::unique_ptr<SegmentShader> shader_;
+    Texture classified_;  // where points are classified
+};
+
+}  // namespace cellproj::gl
