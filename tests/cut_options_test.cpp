@@ -38,7 +38,7 @@ TEST_F(CutOptions, BodiesHaveTheirColour) {
 
 // A ray may keep what is before the plane, what is behind it, or both.
 TEST_F(CutOptions, PlanesAndBoxesCut) {
-    const Pixel whole = seen(""), white{255, 255, 255};
+    const Pixel whole = seen("--as tets"), white{255, 255, 255};
     const std::string dense = "--opacity-scale 1000 --background 1,1,1 ";
     EXPECT_NE(seen("--clip 0,0,1:0,0,1"), whole);
     EXPECT_EQ(seen("--clip 0,0,-1:0,0,5"), whole);          // keeps all
