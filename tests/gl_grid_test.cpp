@@ -15,6 +15,7 @@
 #include "mesh/error.hpp"
 #include "render/gl/grid_gl_renderer.hpp"
 #include "render/gl/grid_traversal.hpp"
+#include "render/gl/osmesa_context.hpp"
 #include "render/grid_reference.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/grids.hpp"
@@ -34,7 +35,7 @@ GridScene scene_of(Grid grid, TransferFunction transfer) {
 }
 
 gl::GlGridRenderer& renderer() {
-    static gl::GlGridRenderer one{gl::OsmesaContext(RendererOptions{}.osmesa_library)};
+    static gl::GlGridRenderer one{std::make_unique<gl::OsmesaContext>(RendererOptions{}.osmesa_library)};
     return one;
 }
 
@@ -271,7 +272,7 @@ TEST(GlGrid, SeesEveryChangeOfTheScene) {
     const auto ramp = std::make_shared<TransferFunction>(testing_support::ramp()), narrow = std::make_shared<TransferFunction>(peaks());
     for (const GridScene& scene : {GridScene{grid, ramp}, {grid, narrow}, {other, narrow}, {other, ramp}, {grid, ramp}}) {
         for (const std::string method : {"integral", "preint2d-exp:32"}) {
-            gl::GlGridRenderer fresh{gl::OsmesaContext(RendererOptions{}.osmesa_library)};
+            gl::GlGridRenderer fresh{std::make_unique<gl::OsmesaContext>(RendererOptions{}.osmesa_library)};
             const Image image = draw(scene, camera, size, method);
             EXPECT_EQ(testing_support::max_difference(image, fresh.render(scene, camera, size, {parse_method(method)}, nullptr)), 0);
         }
