@@ -206,9 +206,14 @@ void PreparedScene::find_facts() {
     const auto& extinction = transfer.extinction_nodes();
     const auto& color = transfer.color_nodes();
     facts_.absorbs = std::ranges::any_of(extinction, [](const ExtinctionNode& node) { return node.extinction > 0.0; });
+    // The ends of the range lie between nodes: what is interpolated there between equal values may be rounded.
+    const auto alike = [](double a, double b) { return std::abs(a - b) <= 1e-14 * std::max(a, b); };
     facts_.constant_light =
-        std::ranges::all_of(extinction, [&](const ExtinctionNode& node) { return node.extinction == extinction.front().extinction; }) &&
-        std::ranges::all_of(color, [&](const ColorNode& node) { return node.color == color.front().color; });
+        std::ranges::all_of(extinction, [&](const ExtinctionNode& node) { return alike(node.extinction, extinction.front().extinction); }) &&
+        std::ranges::all_of(color, [&](const ColorNode& node) {
+            const glm::dvec3 &a = node.color, &b = color.front().color;
+            return alike(a.x, b.x) && alike(a.y, b.y) && alike(a.z, b.z);
+        });
     facts_.surfaces.reset();
     if (!surfaces_) return;
     facts_.surfaces = {surfaces_->values().size(), surfaces_->crossed().size(), surfaces_->scene().isosurfaces.opaque(), surfaces_->jump(),

@@ -92,6 +92,27 @@ TEST(CpuRenderer, AConstantMediumFollowsItsClosedForm) {
     }
 }
 
+// Rays along edges and in faces: a front view of a structured mesh has many. Each belongs to one cell, no more and no less.
+TEST(CpuRenderer, RaysAlongEdgesAreInOneCell) {
+    const std::pair<int, double (*)(const glm::dvec3&)> fields[]{{2, [](const glm::dvec3& p) { return p.z; }}, {4, waves}};
+    const ImageSize size{33, 33};  // the middle column and row, and diagonals, are seen along edges
+    for (const auto& [boxes, field] : fields) {
+        const Scene scene = scene_of(grid_mesh(boxes), field, ramp());
+        const Reference judge(scene);
+        for (const Projection projection : {Projection::parallel, Projection::perspective})
+            for (const glm::dvec3& from : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 1), glm::dvec3(-1, 0, 0), glm::dvec3(-1, 1, 1)}) {
+                const Camera camera = frame_bounds({glm::dvec3(0), glm::dvec3(1)}, projection, from, {0, 1, 0}, 1.0);
+                for (const bool by_pixel : {false, true}) {
+                    const Image image = cpu().render(scene, camera, size, {.order_per_pixel = by_pixel});
+                    const ImageError error = compare(image, judge.pixels(camera, size, all_pixels(size)));
+                    // As in other views.
+                    EXPECT_LT(error.color.maximum, 1e-5) << boxes << " " << from.x << " " << from.y << " " << from.z << " " << by_pixel;
+                    EXPECT_LT(error.opacity.maximum, 1e-5);
+                }
+            }
+    }
+}
+
 class AgainstTheJudge : public testing::Test {
 protected:
     // The Delaunay mesh of the issue, smaller under the sanitizers.

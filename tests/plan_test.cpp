@@ -328,7 +328,8 @@ TEST(Plan, ParallelViewsArePerspectiveFromFarAway) {
     for (const Backend backend : {Backend::cpu, Backend::gl_osmesa}) {
         const auto renderer = make_renderer(backend);
         const double difference = max_difference(renderer->render(scene, near, small, {}), renderer->render(scene, far, small, {}));
-        EXPECT_LE(difference, 1e-6) << (backend == Backend::cpu);
+        // OpenGL's silhouettes lie on a grid of 1/256 of a pixel, to which rounding may send a point either way.
+        EXPECT_LE(difference, backend == Backend::cpu ? 1e-6 : 2e-3) << (backend == Backend::cpu);
     }
 }
 

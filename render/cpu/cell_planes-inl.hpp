@@ -143,17 +143,28 @@ HWY_NOINLINE void make_planes(D d, const ScreenCells& cells, const std::uint32_t
     normal[1] = cross(edge[1], edge[2]);
     normal[2] = cross(edge[0], edge[2]);
     normal[3] = cross(edge[0], edge[1]);
+    // A face seen edge-on, but for the rounding of its corners, tells inside from outside, no nearness: a step at its line. Rays that run
+    // in it, and along edges where several meet, belong to the one cell that holds the ray a little beside: all steps are moved alike,
+    // by more than that rounding, in a direction that no mesh prefers.
+    const float aside = 2.5e-7F * static_cast<float>(HWY_MAX(cells.view.width, cells.view.height));  // pixels
     auto front_faces = hn::Zero(du);
     for (std::size_t k = 0; k < 4; ++k) {
         const Vec3<V>& n = normal[k];
         const Vec3<V>& anchor = p[face[k][0]];
+        const Vec3<V> e = minus(p[face[k][1]], anchor), g = minus(p[face[k][2]], anchor);
+        const V reach = hn::Add(hn::Add(hn::Abs(e.x), hn::Abs(e.y)), hn::Add(hn::Abs(g.x), hn::Abs(g.y)));
+        const V away_from_middle = hn::Add(hn::Add(hn::Abs(anchor.x), hn::Abs(anchor.y)), reach);
+        // Twice the area is good to 4 products of an edge and half a unit in the last place of a corner.
+        const auto edge_on = hn::Le(hn::Abs(n.n), hn::Mul(hn::Mul(reach, away_from_middle), hn::Set(d, 2.4e-7F)));
         // No slope beyond 1e20: then all products below are finite.
         const V least = hn::MulAdd(hn::Add(hn::Abs(n.x), hn::Abs(n.y)), hn::Set(d, 1e-20F), hn::Set(d, 1e-30F));
-        const V area = hn::Max(hn::Abs(n.n), least);
+        const V area = hn::IfThenElse(edge_on, least, hn::Max(hn::Abs(n.n), least));
         const auto sign = hn::And(hn::BitCast(du, n.n), hn::Set(du, 0x80000000U));
         const V inverse = hn::Div(hn::Set(d, -1.0F), hn::BitCast(d, hn::Or(hn::BitCast(du, area), sign)));
         const V slope_x = hn::Mul(n.x, inverse), slope_y = hn::Mul(n.y, inverse);
-        const V at_first = hn::MulAdd(slope_x, hn::Sub(first_x, anchor.x), hn::Mul(slope_y, hn::Sub(first_y, anchor.y)));
+        const V from_x = hn::Add(hn::Sub(first_x, anchor.x), hn::IfThenElseZero(edge_on, hn::Set(d, 0.79F * aside)));
+        const V from_y = hn::Add(hn::Sub(first_y, anchor.y), hn::IfThenElseZero(edge_on, hn::Set(d, 0.61F * aside)));
+        const V at_first = hn::MulAdd(slope_x, from_x, hn::Mul(slope_y, from_y));
         hn::Store(k == 0 ? hn::Add(at_first, edge[0].n) : at_first, d, planes.nearness[k]);
         hn::Store(slope_x, d, planes.slope_x[k]);
         hn::Store(slope_y, d, planes.slope_y[k]);
