@@ -129,8 +129,9 @@ TEST_P(SurfaceMethods, OfEveryShadingWithAndWithoutMediumAndSecondField) {
             for (const Shading shading : {Shading::unlit, Shading::flat, Shading::smooth}) {
                 const Scene drawn = with_surfaces(scene, three(opacity), shading);
                 const Image exact = gl().render(drawn, camera, size, by("exact"));
-                for (const char* method : {"table:1024", "combined:1024"}) {
-                    const Image image = gl().render(drawn, camera, size, by(method));
+                for (const char* name : {"table:", "combined:"}) {
+                    const std::string method = name + std::string(CELLPROJ_SANITIZED ? "256" : "1024");  // large tables are slow to make there
+                    const Image image = gl().render(drawn, camera, size, by(method.c_str()));
                     double sum = 0;
                     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
                         const glm::vec4 p = image.pixels[i], q = exact.pixels[i];
