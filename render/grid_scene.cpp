@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 #include "mesh/error.hpp"
@@ -44,6 +45,20 @@ GridUnits units_of(const Grid& grid) {
                 for (const double s : grid.corner_values({i, j, k})) include(s);
             }
     return units;
+}
+
+float GridUnits::kept(double s) const {
+    const double share = normalized(s);
+    return std::isfinite(share) ? static_cast<float>(std::clamp(share, 0.0, 1.0)) : 0.0F;
+}
+
+// Edges add up along the axes by themselves: all cells together have the volume of the box, and faces across each axis.
+double mean_chord(const Grid& grid, const GridUnits& units) {
+    const glm::dvec3 edges = (grid.bounds().high - grid.bounds().low) / units.length;
+    double inverse = 0.0;
+    for (int a = 0; a < 3; ++a)
+        inverse += static_cast<double>(grid.axes[static_cast<std::size_t>(a)].cells()) / edges[a];
+    return 2.0 / inverse;  // volume xyz, surface 2·(n_x·yz + n_y·xz + n_z·xy)
 }
 
 }  // namespace cellproj

@@ -36,9 +36,14 @@ struct GridUnits {
     double normalized(double s) const {
         return scalar_high > scalar_low ? (s - scalar_low) / (scalar_high - scalar_low) : 0.0;
     }
+    // The same as renderers keep it, 0..1; values that only blanked cells have may be anything.
+    float kept(double s) const;
 };
 
 // Of a sound grid. O(cells).
 GridUnits units_of(const Grid& grid);
+
+// Mean length of a segment over all cells and directions, 4·volume / surface by Cauchy's formula [GridUnits::length], > 0.
+double mean_chord(const Grid& grid, const GridUnits& units);
 
 }  // namespace cellproj

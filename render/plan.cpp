@@ -209,26 +209,16 @@ constexpr std::array backend_names{std::pair{"auto", BackendWish::automatic}, st
                                    std::pair{"gl", BackendWish::gl}, std::pair{"egl", BackendWish::egl},
                                    std::pair{"osmesa", BackendWish::osmesa}};
 
-std::string to_words(Backend backend) {
-    switch (backend) {
-        case Backend::cpu: return "cpu";
-        case Backend::gl_egl: return "gl_egl";
-        case Backend::gl_osmesa: break;
-    }
-    return "gl_osmesa";
-}
-
 // Of those that `automatic` may take.
 std::string why_automatic(Backend backend, const Quality& quality, FieldsRead fields, const Gpu& gpu) {
     if (backend == Backend::gl_egl) return "a GPU: " + gpu.what;
     if (backend == Backend::cpu)
         return gpu.found ? "pixels that sort themselves are drawn by it alone" : "without a GPU it is the fastest (EGL: " + gpu.what + ")";
-    if (fields == FieldsRead::two) return "opacity from another field is drawn by OpenGL only, and there is no GPU (EGL: " + gpu.what + ")";
-    const std::string what = light_at_vertices(quality.method)                        ? "light at vertices"
+    const std::string what = fields == FieldsRead::two                           ? "opacity from another field"
+                             : light_at_vertices(quality.method)                 ? "light at vertices"
                              : quality.surfaces.kind != SurfaceMethodKind::exact ? "isosurfaces by " + to_string(quality.surfaces)
-                                                                                      : "target " + to_string(quality.target);
-    return what +
-           std::string(" is drawn by OpenGL only, and there is no GPU (EGL: ") + gpu.what + ")";
+                                                                                 : "target " + to_string(quality.target);
+    return what + " is drawn by OpenGL only, and there is no GPU (EGL: " + gpu.what + ")";
 }
 
 }  // namespace
@@ -261,7 +251,7 @@ ChosenBackend choose_backend(BackendWish wish, const Quality& quality, FieldsRea
     std::string why = "asked for";
     if (wish == BackendWish::gl) why = "OpenGL was asked for, and there is " + (gpu.found ? "a GPU: " + gpu.what : "no GPU (EGL: " + gpu.what + ")");
     if (wish == BackendWish::automatic) why = why_automatic(backend, quality, fields, gpu);
-    return {backend, {"backend", to_words(backend), std::move(why)}};
+    return {backend, {"backend", to_string(backend), std::move(why)}};
 }
 
 void tell_order(std::vector<Decision>& decisions, const std::string& method, bool exact) {

@@ -41,6 +41,15 @@ std::optional<Error> refusal(Backend backend, const Quality& quality, FieldsRead
 
 }  // namespace
 
+std::string to_string(Backend backend) {
+    switch (backend) {
+        case Backend::cpu: return "cpu";
+        case Backend::gl_egl: return "gl_egl";
+        case Backend::gl_osmesa: break;
+    }
+    return "gl_osmesa";
+}
+
 bool draws(Backend backend, const Quality& quality, FieldsRead fields) { return !refusal(backend, quality, fields); }
 
 void require_drawn(Backend backend, const Quality& quality, FieldsRead fields) {

@@ -55,6 +55,8 @@ enum class Backend {
     cpu         // native, the faster one without a GPU; light for each pixel, rgba32f
 };
 
+std::string to_string(Backend backend);  // "gl_osmesa", "gl_egl", "cpu", as statistics say
+
 struct RendererOptions {
     std::string osmesa_library = "libOSMesa.so.8";  // name or path, loaded when the renderer is made
     std::string egl_library = "libEGL.so.1";        // likewise

@@ -33,8 +33,7 @@ const Lighting unlit{.ambient = glm::dvec3(1), .lights = {}};
 const glm::dvec3 green(0.1, 0.8, 0.3), medium_color(1.0, 0.5, 0.25);
 
 class BodiesOfEither : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(Bodies, BodiesOfEither, testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
-                         [](const auto& projection) { return name_of(projection.param); });
+INSTANTIATE_TEST_SUITE_P(Bodies, BodiesOfEither, either_projection, name_of_projection);
 
 // How far along its ray a pixel sees the plane z = `height`, where |x|, |y| are at most `reach`: a rectangle.
 std::optional<double> to_rectangle(const ScreenTransform::Ray& ray, double height, double reach) {

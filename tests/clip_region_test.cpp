@@ -64,8 +64,7 @@ const std::vector<std::vector<HalfSpace>> regions{
 };
 
 class ClipOfEither : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(Clip, ClipOfEither, testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
-                         [](const auto& projection) { return name_of(projection.param); });
+INSTANTIATE_TEST_SUITE_P(Clip, ClipOfEither, either_projection, name_of_projection);
 
 // The judge integrates to 1e-9; float32 lengths and exponentials: 1e-6. OpenGL's corners lie on a grid of 1/256 of a pixel, which
 // moves planes of slivers.

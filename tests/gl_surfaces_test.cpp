@@ -20,6 +20,7 @@
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
 #include "render/surface_vertex.hpp"
+#include "tests/support/either_projection.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -40,12 +41,7 @@ Renderer& gl() {
     return *renderer;
 }
 
-TransferFunction nothing() { return constant_medium(0); }
-
-Scene with_surfaces(Scene scene, std::vector<IsoSurface> list, Shading shading = Shading::unlit, const Lighting& lighting = {}) {
-    scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::move(list)), shading, lighting});
-    return scene;
-}
+Scene unlit(Scene scene, std::vector<IsoSurface> list) { return with_surfaces(std::move(scene), std::move(list), Shading::unlit); }
 
 std::vector<IsoSurface> layers(int count, double opacity, ScalarRange values = {0, 1}) {
     std::vector<IsoSurface> list;
@@ -104,11 +100,7 @@ Camera from_above(double height = 1) {
 Camera inside_of_cube() { return {.eye = {0.4, 0.45, 0.5}, .center = {0.9, 0.8, 0.6}, .up = {0, 0, 1}, .fov_y_degrees = 70}; }
 
 class GlSurfacesOfEither : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(GlSurfaces, GlSurfacesOfEither,
-                         testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
-                         [](const auto& projection) {
-                             return projection.param == Camera::Projection::parallel ? "parallel" : "perspective";
-                         });
+INSTANTIATE_TEST_SUITE_P(GlSurfaces, GlSurfacesOfEither, testing_support::either_projection, testing_support::name_of_projection);
 
 // k layers of opacity a: 1 − (1 − a)^k. The judge's own count is proven elsewhere (ray_surfaces_test); float32 composes 20 within 1e-6.
 // Values between the points', and those of the points of a regular grid.
@@ -118,7 +110,7 @@ TEST_P(GlSurfacesOfEither, TwentyLayersOfATenth) {
         for (const double shift : {0.0, 0.5 / 20}) {
             std::vector<IsoSurface> list = layers(20, 0.1);
             for (IsoSurface& surface : list) surface.value += shift;
-            const Scene scene = with_surfaces(scene_of(grid_mesh(7, jitter, 5), linear, nothing()), list);
+            const Scene scene = unlit(scene_of(grid_mesh(7, jitter, 5), linear, nothing()), list);
             EXPECT_LT(judge(scene, camera).largest, 2e-6) << jitter << " " << shift;
         }
     }
@@ -138,7 +130,7 @@ TEST_P(GlSurfacesOfEither, OfALinearFieldAreLitPlanes) {
 // Depth, to 1e-5 of the box: a medium so dense that 1e-5 of its length changes the light by 1e-5, in front of planes.
 TEST_P(GlSurfacesOfEither, LieWhereTheJudgeHasThem) {
     const TransferFunction fog(OpticalModel::density, {{0, {1.0, 0.5, 0.25}}}, {{0, 1.0}});
-    const Scene scene = with_surfaces(scene_of(grid_mesh(5, 0.2, 8), linear, fog), layers(6, 1));
+    const Scene scene = unlit(scene_of(grid_mesh(5, 0.2, 8), linear, fog), layers(6, 1));
     for (const glm::dvec3& from : {glm::dvec3(1.3, -2.1, 0.9), glm::dvec3(-1, -0.4, 2)})
         EXPECT_LT(judge(scene, view_of_unit_cube(GetParam(), from)).largest, 2e-5);
 }
@@ -198,7 +190,7 @@ TEST_P(GlSurfacesOfEither, OfNoise) {
     const Scene noise = scene_of(grid_mesh(8, 0.2, 3), [&](const glm::dvec3&) { return static_cast<double>(random() % 1000) / 1000; }, nothing());
     Scene medium = noise;
     medium.transfer = std::make_shared<TransferFunction>(ramp());
-    for (const Scene& scene : {with_surfaces(noise, layers(20, 0.1)), with_surfaces(noise, layers(3, 1), Shading::flat),
+    for (const Scene& scene : {unlit(noise, layers(20, 0.1)), with_surfaces(noise, layers(3, 1), Shading::flat),
                                with_surfaces(noise, layers(3, 1), Shading::smooth), with_surfaces(medium, layers(3, 0.5), Shading::smooth)}) {
         const Judged judged = judge(scene, view_of_unit_cube(GetParam()));
         EXPECT_LE(judged.wrong, judged.pixels / 500);
@@ -208,7 +200,7 @@ TEST_P(GlSurfacesOfEither, OfNoise) {
 TEST(GlSurfaces, AroundACameraInside) {
     const auto quadratic = [](const glm::dvec3& p) { return glm::dot(p - 0.5, p - 0.5); };
     Scene scene = scene_of(grid_mesh(9, 0.2, 3), quadratic, nothing());
-    EXPECT_LT(judge(with_surfaces(scene, layers(20, 0.1, {0.02, 0.75})), inside_of_cube()).largest, 1e-4);
+    EXPECT_LT(judge(unlit(scene, layers(20, 0.1, {0.02, 0.75})), inside_of_cube()).largest, 1e-4);
     EXPECT_LT(judge(with_surfaces(scene, layers(5, 1, {0.02, 0.75}), Shading::flat), inside_of_cube()).largest, 1e-3);
     scene.transfer = std::make_shared<TransferFunction>(constant_medium(2));
     EXPECT_LT(judge(with_surfaces(scene, layers(5, 0.5, {0.02, 0.75}), Shading::smooth), inside_of_cube()).largest, 1e-3);
@@ -245,7 +237,7 @@ TEST(GlSurfaces, AtTheValuesOfPoints) {
         const auto at = [&](double shift) {
             std::vector<IsoSurface> list;
             for (const double v : {0.0, 1.0, 1.5, 2.0, 3.0}) list.push_back({scale * (v - shift), {1, 1, 1}, 0.1, {}});
-            return with_surfaces(bare, list);
+            return unlit(bare, list);
         };
         for (const auto& [camera, size] : {std::pair(from_above(), ImageSize{24, 24}),
                                            {from_above(), {23, 23}},
@@ -264,14 +256,14 @@ TEST(GlSurfaces, AtTheValuesOfFacesAndCells) {
     const Camera top{.eye = {0.5, 0.5, 2.5}, .center = {0.5, 0.5, 0.5}, .up = {0, 1, 0}};
     std::vector<IsoSurface> planes;
     for (int i = 0; i <= 6; ++i) planes.push_back({i / 6.0, {1, 1, 1}, 0.1, {}});
-    const Scene faces = with_surfaces(scene_of(grid_mesh(6), [](const glm::dvec3& p) { return p.z; }, nothing()), planes);
+    const Scene faces = unlit(scene_of(grid_mesh(6), [](const glm::dvec3& p) { return p.z; }, nothing()), planes);
     for (const Camera& camera : {from_above(), top, view_of_unit_cube(Camera::Projection::perspective)})
         EXPECT_LT(judge(faces, camera).largest, 2e-6);
     EXPECT_LT(judge(faces, from_above(), {24, 24}).largest, 2e-6);
     // Half of the boxes at .5, the others below, or above; a layer of .5 in what is below.
     for (const auto f : {+[](const glm::dvec3& p) { return std::min(p.z, 0.5); }, +[](const glm::dvec3& p) { return std::max(p.z, 0.5); },
                          +[](const glm::dvec3& p) { return p.z == 0.5 || p.z == 0.25 ? 0.5 : 0.0; }}) {
-        const Scene cells = with_surfaces(scene_of(grid_mesh(4), f, nothing()), {{0.5, {1, 1, 1}, 0.1, {}}});
+        const Scene cells = unlit(scene_of(grid_mesh(4), f, nothing()), {{0.5, {1, 1, 1}, 0.1, {}}});
         for (const Camera& camera : {from_above(), top, view_of_unit_cube(Camera::Projection::perspective)})
             EXPECT_LT(judge(cells, camera).largest, 2e-6);
     }
@@ -284,7 +276,7 @@ TEST(GlSurfaces, LieInFlatCells) {
     mesh.tets = {{0, 1, 2, 4}, {0, 2, 3, 4}, {0, 1, 3, 5}, {1, 2, 3, 5}, {0, 1, 2, 3}};
     orient_cells(mesh);
     const Scene scene =
-        with_surfaces(scene_of(mesh, ScalarField{"s", FieldLocation::points, {1, 0, 1, 0, 1, 0}}, nothing()), {{0.5, {1, 1, 1}, 0.1, {}}});
+        unlit(scene_of(mesh, ScalarField{"s", FieldLocation::points, {1, 0, 1, 0, 1, 0}}, nothing()), {{0.5, {1, 1, 1}, 0.1, {}}});
     for (const Camera& camera : {from_above(), from_above(1.3), view_of_unit_cube(Camera::Projection::perspective)})
         EXPECT_LT(judge(scene, camera, {31, 31}).largest, 2e-6);
 }
@@ -294,7 +286,7 @@ TEST(GlSurfaces, InACyclicMesh) {
     const TetMesh mesh = cyclic_ring(7);
     const ScalarField field = point_field(mesh, [](const glm::dvec3& p) { return p.x + 0.3 * p.y - 0.6 * p.z; });
     const Camera camera = frame_bounds(bounds(mesh.points), Camera::Projection::parallel, {0, 0, 1}, {0, 1, 0}, 1);
-    const Judged judged = judge(with_surfaces(scene_of(mesh, field, constant_medium(0.5)), layers(20, 0.1, range(field.values))), camera);
+    const Judged judged = judge(unlit(scene_of(mesh, field, constant_medium(0.5)), layers(20, 0.1, range(field.values))), camera);
     EXPECT_LE(judged.wrong, judged.pixels / 1000);
     EXPECT_GT(judged.statistics.counts.split_cells, 0U);
 }
@@ -310,7 +302,7 @@ TEST(GlSurfaces, OfTheBluntFin) {
     for (int i = 1; i <= 20; ++i) list.push_back({quantile(field.values, i / 21.0), {1, 0.5, 0}, 0.1, {}});
     const Camera camera = frame_bounds(bounds(mesh.points), Camera::Projection::perspective, {-0.6, -1.5, 0.9}, {0, 0, 1}, 1);
     const ImageSize size = CELLPROJ_SANITIZED ? ImageSize{16, 16} : ImageSize{160, 160};
-    const Scene scene = with_surfaces(scene_of(std::move(mesh), field, nothing()), list);
+    const Scene scene = unlit(scene_of(std::move(mesh), field, nothing()), list);
     const Image image = gl().render(scene, camera, size);
     const Reference reference(scene);
     const auto seen_around = [&](const PixelTruth& truth) {
@@ -385,7 +377,7 @@ TEST(GlSurfaces, OnlyWhatIsCrossedOrSeenIsDrawn) {
     const Camera camera = view_of_unit_cube(Camera::Projection::perspective);
     Statistics plain, with_one;
     gl().render(medium, camera, usual_size, {}, &plain);
-    const Judged judged = judge(with_surfaces(medium, {{0.4, {1, 1, 1}, 0.5, {}}}), camera);
+    const Judged judged = judge(unlit(medium, {{0.4, {1, 1, 1}, 0.5, {}}}), camera);
     EXPECT_LT(judged.largest, 1e-4);
     EXPECT_GT(judged.statistics.counts.drawn, plain.counts.drawn);
     EXPECT_LT(judged.statistics.counts.drawn, 2000U);  // of 2560
@@ -394,8 +386,8 @@ TEST(GlSurfaces, OnlyWhatIsCrossedOrSeenIsDrawn) {
 TEST(GlSurfaces, OutsideTheRangeChangeNothing) {
     const Scene scene = scene_of(grid_mesh(4), linear, ramp());
     const Camera camera = view_of_unit_cube(Camera::Projection::perspective);
-    EXPECT_LT(judge(with_surfaces(scene, {{-1}, {0.0}, {1.5}, {1e300}, {-1e300}}), scene, camera).largest, 1e-4);
-    const Scene nothing_there = with_surfaces(scene_of(grid_mesh(4), linear, nothing()), {{-1}, {1.5}});
+    EXPECT_LT(judge(unlit(scene, {{-1}, {0.0}, {1.5}, {1e300}, {-1e300}}), scene, camera).largest, 1e-4);
+    const Scene nothing_there = unlit(scene_of(grid_mesh(4), linear, nothing()), {{-1}, {1.5}});
     Statistics statistics;
     const Image image = gl().render(nothing_there, camera, {16, 16}, {}, &statistics);
     EXPECT_EQ(statistics.counts.drawn, 0U);
@@ -406,7 +398,7 @@ TEST(GlSurfaces, LeaveOutCellsThatAreNotFinite) {
     TetMesh mesh = grid_mesh(5);
     ScalarField field = point_field(mesh, linear);
     field.values[40] = std::nan("");
-    const Scene scene = with_surfaces(scene_of(mesh, field, nothing()), layers(9, 0.2));
+    const Scene scene = unlit(scene_of(mesh, field, nothing()), layers(9, 0.2));
     EXPECT_LT(judge(scene, view_of_unit_cube(Camera::Projection::parallel)).largest, 2e-6);
 }
 
@@ -437,7 +429,7 @@ TEST(GlSurfaces, LightsOfEveryKind) {
 }
 
 TEST(GlSurfaces, AreRefusedWithWhatKnowsNoPlaceInASegment) {
-    const Scene scene = with_surfaces(scene_of(grid_mesh(2), linear, ramp()), {{0.5}});
+    const Scene scene = unlit(scene_of(grid_mesh(2), linear, ramp()), {{0.5}});
     const auto refused = [&](const Scene& refused_scene, const char* method) {
         try {
             gl().prepare(refused_scene, {.method = parse_method(method)});
@@ -450,7 +442,7 @@ TEST(GlSurfaces, AreRefusedWithWhatKnowsNoPlaceInASegment) {
     Scene none = scene;
     none.surfaces = std::make_shared<SurfaceScene>();
     EXPECT_FALSE(refused(none, "average:half"));
-    const Scene on_cells = with_surfaces(scene_of(*scene.mesh, ScalarField{"c", FieldLocation::cells, std::vector<double>(scene.mesh->tets.size())}, ramp()),
+    const Scene on_cells = unlit(scene_of(*scene.mesh, ScalarField{"c", FieldLocation::cells, std::vector<double>(scene.mesh->tets.size())}, ramp()),
                                          {{0.5}});
     EXPECT_TRUE(refused(on_cells, "integral"));
 }

@@ -23,6 +23,7 @@
 #include "mesh/error.hpp"
 #include "tests/support/cut_scenes.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/either_projection.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -34,12 +35,14 @@ using scenes::waves;
 using testing_support::constant_medium;
 using testing_support::grid_mesh;
 using testing_support::max_difference;
+using testing_support::nothing;
 using testing_support::point_field;
 using testing_support::ramp;
 using testing_support::scene_of;
 using testing_support::sphere;
 using testing_support::view_of_unit_cube;
 using testing_support::with_bodies;
+using testing_support::with_surfaces;
 
 using Projection = Camera::Projection;
 using Drawing = Plan::Drawing;
@@ -47,17 +50,10 @@ constexpr bool sanitized = CELLPROJ_SANITIZED;
 constexpr ImageSize small = sanitized ? ImageSize{40, 32} : ImageSize{96, 80};
 constexpr int boxes = sanitized ? 4 : 7;
 
-TransferFunction nothing() { return constant_medium(0); }
-
 // Shines and absorbs nothing; brightness about 1 through the cube.
 TransferFunction glow() { return {OpticalModel::emitter, {{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0}}}; }
 
 const std::vector<IsoSurface> opaque_three{{0.3, {0.2, 0.9, 0.4}, 1, {}}, {0.5, {1, 0, 0}, 1, glm::dvec3(0, 0, 1)}, {0.7, {0.5, 0.5, 0.5}, 1, {}}};
-
-Scene with(Scene scene, std::vector<IsoSurface> list, Shading shading = Shading::smooth, const Lighting& lighting = {}) {
-    scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::move(list)), shading, lighting});
-    return scene;
-}
 
 Scene waves_in(const TransferFunction& transfer) { return scene_of(grid_mesh(boxes, 0.2), waves, transfer); }
 
@@ -109,15 +105,15 @@ protected:
 };
 
 INSTANTIATE_TEST_SUITE_P(Plan, PlanOfEither,
-                         testing::Combine(testing::Values(Backend::cpu, Backend::gl_osmesa), testing::Values(Projection::parallel, Projection::perspective)),
+                         testing::Combine(testing::Values(Backend::cpu, Backend::gl_osmesa), testing_support::either_projection),
                          [](const auto& chosen) {
-                             return std::string(std::get<0>(chosen.param) == Backend::cpu ? "cpu" : "gl") +
-                                    (std::get<1>(chosen.param) == Projection::parallel ? "_parallel" : "_perspective");
+                             return std::string(std::get<0>(chosen.param) == Backend::cpu ? "cpu_" : "gl_") +
+                                    testing_support::name_of(std::get<1>(chosen.param));
                          });
 
 TEST_P(PlanOfEither, OpaqueSurfacesNeedNoOrder) {
     for (const Shading shading : {Shading::flat, Shading::smooth, Shading::unlit}) {
-        const Scene scene = with(waves_in(nothing()), opaque_three, shading);
+        const Scene scene = with_surfaces(waves_in(nothing()), opaque_three, shading);
         const Drawn shortest = draw(scene), general = draw(scene, {}, {.nearest_surfaces = false});
         EXPECT_EQ(shortest.statistics.order, "none");
         EXPECT_NE(general.statistics.order, "none");
@@ -144,7 +140,7 @@ TEST_P(PlanOfEither, CellsThatShowNothingAreLeftOut) {
     const TransferFunction shining(OpticalModel::emitter, {{0.85, {0, 0, 0}}, {0.9, {9, 3, 0}}, {0.95, {0, 0, 0}}}, {{0.1, 2}, {0.12, 0}});
     for (const TransferFunction& transfer : {tent, shining})
         for (const bool surfaces : {false, true}) {
-            const Scene scene = surfaces ? with(waves_in(transfer), {{0.5, {1, 0, 0}, 0.4, {}}}) : waves_in(transfer);
+            const Scene scene = surfaces ? with_surfaces(waves_in(transfer), {{0.5, {1, 0, 0}, 0.4, {}}}) : waves_in(transfer);
             const Drawn shortest = draw(scene), general = draw(scene, {}, {.culling = false});
             EXPECT_LT(shortest.statistics.counts.drawn, general.statistics.counts.drawn * 3 / 4);
             EXPECT_GT(brightest(shortest.image), 0.1);
@@ -156,7 +152,7 @@ TEST_P(PlanOfEither, CellsThatShowNothingAreLeftOut) {
 TEST_P(PlanOfEither, FewCellsAreSortedByPixels) {
     const TransferFunction tent(OpticalModel::density, {{0, {0.9, 0.3, 0.1}}}, {{0.93, 0}, {0.96, 40}, {0.99, 0}});
     const Scene fine = scene_of(grid_mesh(sanitized ? 10 : 20, 0.2), waves, tent);
-    Scene surface = with(fine, {{0.95, {1, 0, 0}, 0.4, {}}});
+    Scene surface = with_surfaces(fine, {{0.95, {1, 0, 0}, 0.4, {}}});
     const Scene both = surface;
     surface.transfer = std::make_shared<TransferFunction>(nothing());
     for (const Scene& scene : {fine, surface, both}) {
@@ -184,7 +180,7 @@ TEST(Plan, ExpectsAsManyFragmentsAsThereAre) {
 }
 
 TEST_P(PlanOfEither, NothingToSeeIsAnEmptyPicture) {
-    const Scene missed = with(waves_in(nothing()), {{7.0, {1, 0, 0}, 1, {}}});
+    const Scene missed = with_surfaces(waves_in(nothing()), {{7.0, {1, 0, 0}, 1, {}}});
     for (const Scene& scene : {waves_in(nothing()), missed}) {
         const Drawn shortest = draw(scene), general = draw(scene, {}, {.nothing_seen = false, .culling = false, .nearest_surfaces = false, .sum = false});
         EXPECT_LE(max_difference(shortest.image, general.image), 1e-30);  // what is left of guards against 0/0
@@ -222,7 +218,7 @@ TEST_P(PlanOfEither, BodiesAreSeenWithoutCells) {
     away.eye += glm::dvec3(5, 0, 0);
     const PlanRules none{.empty_view = false, .nothing_seen = false, .culling = false, .nearest_surfaces = false, .sum = false, .few_cells = false, .constant_light = false};
     for (const auto& [scene, view] : {std::pair(waves_in(nothing()), camera()), std::pair(waves_in(ramp()), away), std::pair(waves_in(glow()), camera()),
-                                      std::pair(with(waves_in(nothing()), opaque_three), camera())}) {
+                                      std::pair(with_surfaces(waves_in(nothing()), opaque_three), camera())}) {
         const Drawn shortest = draw(with_spheres(scene), view), general = draw(with_spheres(scene), view, {}, none);
         EXPECT_GT(brightest(shortest.image), 0.99);  // a body is opaque
         EXPECT_EQ(chosen(shortest.statistics.plan, "rays"), "cut");
@@ -273,9 +269,9 @@ TEST_P(PlanOfEither, ChangesWithTheScene) {
     set(2, nothing());
     set(3, glow());
     set(4, nothing());
-    scenes[4] = with(scenes[4], opaque_three);
+    scenes[4] = with_surfaces(scenes[4], opaque_three);
     set(5, glow());
-    scenes[5] = with(scenes[5], opaque_three);
+    scenes[5] = with_surfaces(scenes[5], opaque_three);
     for (const std::size_t i : {0, 1, 0, 2, 1, 3, 2, 4, 5, 4, 6, 2, 5}) {
         const Image image = renderer->render(scenes[i], camera(), small, {});
         EXPECT_EQ(max_difference(image, draw(scenes[i]).image), 0.0) << i;
@@ -284,9 +280,9 @@ TEST_P(PlanOfEither, ChangesWithTheScene) {
 
 // Flat shading is smooth shading where every point has the gradient of its one cell.
 TEST_P(PlanOfEither, FlatShadingNeedsNoGradientsAtPoints) {
-    const Scene flat = with(waves_in(nothing()), opaque_three, Shading::flat);
+    const Scene flat = with_surfaces(waves_in(nothing()), opaque_three, Shading::flat);
     Scene smooth = exploded(flat, [&](CellId cell, int corner) { return flat.field->at(*flat.mesh, cell, corner); });
-    smooth.surfaces = with(flat, opaque_three, Shading::smooth).surfaces;
+    smooth.surfaces = with_surfaces(flat, opaque_three, Shading::smooth).surfaces;
     const Drawn shortest = draw(flat), general = draw(smooth);
     EXPECT_EQ(chosen(shortest.statistics.plan, "gradients"), "one for a cell");
     EXPECT_EQ(chosen(general.statistics.plan, "gradients"), "at points");
@@ -297,8 +293,8 @@ TEST_P(PlanOfEither, FlatShadingNeedsNoGradientsAtPoints) {
 // Light that is ambient only, of strength 1, is none.
 TEST_P(PlanOfEither, UnlitSurfacesNeedNoGradients) {
     const Lighting ambient{.ambient = glm::dvec3(1), .lights = {}};
-    const Drawn shortest = draw(with(waves_in(nothing()), opaque_three, Shading::unlit));
-    const Drawn general = draw(with(waves_in(nothing()), opaque_three, Shading::smooth, ambient));
+    const Drawn shortest = draw(with_surfaces(waves_in(nothing()), opaque_three, Shading::unlit));
+    const Drawn general = draw(with_surfaces(waves_in(nothing()), opaque_three, Shading::smooth, ambient));
     EXPECT_EQ(chosen(shortest.statistics.plan, "gradients"), "none");
     EXPECT_LE(max_difference(shortest.image, general.image), 1e-6);
 }
@@ -362,10 +358,10 @@ TEST(Plan, TenScenesAreExplained) {
         {"a ramp", base, usual, Backend::cpu, Drawing::by_cells, everything.c_str(), "cells, exactly", "integral", "none"},
         {"pixels sort", base, {.order_per_pixel = true}, Backend::cpu, Drawing::by_pixels, everything.c_str(), "by each pixel", "integral", "none"},
         {"an order that was asked for", base, {.order = OrderMethod::centroid}, Backend::gl_osmesa, Drawing::by_cells, everything.c_str(), "cells by centroid", "integral", "none"},
-        {"opaque surfaces alone", with(of(nothing()), opaque_three), usual, Backend::cpu, Drawing::nearest_surfaces, none.c_str(), "none: the nearest", "none", "at points"},
-        {"flat ones", with(of(nothing()), opaque_three, Shading::flat), usual, Backend::gl_osmesa, Drawing::nearest_surfaces, none.c_str(), "none: the nearest", "none", "one for a cell"},
-        {"translucent surfaces", with(of(nothing()), translucent, Shading::unlit), usual, Backend::cpu, Drawing::by_cells, none.c_str(), "cells, exactly", "none", "none"},
-        {"opaque surfaces in a medium", with(base, opaque_three), usual, Backend::gl_osmesa, Drawing::by_cells, everything.c_str(), "cells, exactly", "integral", "at points"},
+        {"opaque surfaces alone", with_surfaces(of(nothing()), opaque_three), usual, Backend::cpu, Drawing::nearest_surfaces, none.c_str(), "none: the nearest", "none", "at points"},
+        {"flat ones", with_surfaces(of(nothing()), opaque_three, Shading::flat), usual, Backend::gl_osmesa, Drawing::nearest_surfaces, none.c_str(), "none: the nearest", "none", "one for a cell"},
+        {"translucent surfaces", with_surfaces(of(nothing()), translucent, Shading::unlit), usual, Backend::cpu, Drawing::by_cells, none.c_str(), "cells, exactly", "none", "none"},
+        {"opaque surfaces in a medium", with_surfaces(base, opaque_three), usual, Backend::gl_osmesa, Drawing::by_cells, everything.c_str(), "cells, exactly", "integral", "at points"},
         {"light alone", of(glow()), usual, Backend::cpu, Drawing::sum, everything.c_str(), "none: light adds up", "integral", "none"},
         {"nothing", of(nothing()), usual, Backend::gl_osmesa, Drawing::nothing, none.c_str(), "none: an empty picture", "none", "none"},
         {"a constant medium", of(constant_medium(2)), usual, Backend::cpu, Drawing::by_cells, everything.c_str(), "cells, exactly", "integral", "none"},

@@ -24,6 +24,7 @@
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/either_projection.hpp"
 #include "tests/support/layers.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
@@ -48,8 +49,6 @@ Scene with(Scene scene, std::shared_ptr<const SurfaceScene> surfaces) {
     scene.surfaces = std::move(surfaces);
     return scene;
 }
-
-TransferFunction nothing() { return constant_medium(0); }
 
 Camera from_above() {
     return {.projection = Camera::Projection::parallel, .eye = {0.5, 0.5, 9}, .center = {0.5, 0.5, 0}, .up = {0, 1, 0}, .height = 1};
@@ -82,11 +81,7 @@ int for_rays_through_cube(const Camera& camera, ImageSize size, Visit visit) {
 }
 
 class SurfacesOfEither : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(RaySurfaces, SurfacesOfEither,
-                         testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
-                         [](const auto& projection) {
-                             return projection.param == Camera::Projection::parallel ? "parallel" : "perspective";
-                         });
+INSTANTIATE_TEST_SUITE_P(RaySurfaces, SurfacesOfEither, testing_support::either_projection, testing_support::name_of_projection);
 
 // Values among them that many points have (.5), and that none has.
 TEST_P(SurfacesOfEither, OfALinearFieldArePlanes) {

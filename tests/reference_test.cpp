@@ -21,6 +21,7 @@
 #include "mesh/error.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/either_projection.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -79,11 +80,7 @@ double error_in_unit_cube(const Scene& scene, const Camera& camera, ImageSize si
 }
 
 class ReferenceOfEither : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(Reference, ReferenceOfEither,
-                         testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
-                         [](const auto& projection) {
-                             return projection.param == Camera::Projection::parallel ? "parallel" : "perspective";
-                         });
+INSTANTIATE_TEST_SUITE_P(Reference, ReferenceOfEither, testing_support::either_projection, testing_support::name_of_projection);
 
 TEST_P(ReferenceOfEither, AConstantMediumInABox) {
     for (const glm::dvec3& from : {glm::dvec3(1.3, -2.1, 0.9), glm::dvec3(-0.4, 0.3, 2), glm::dvec3(1, 0.02, 0.01)}) {

@@ -18,6 +18,7 @@
 #include "classify/segment_integral.hpp"
 #include "mesh/error.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/either_projection.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -69,11 +70,7 @@ Truth truth_in_unit_cube(const Camera& camera, ImageSize size, const TransferFun
 }
 
 class EitherProjection : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(Renderer, EitherProjection,
-                         testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
-                         [](const auto& projection) {
-                             return projection.param == Camera::Projection::parallel ? "parallel" : "perspective";
-                         });
+INSTANTIATE_TEST_SUITE_P(Renderer, EitherProjection, testing_support::either_projection, testing_support::name_of_projection);
 
 // 1 − exp(−τ·chord) whatever the mesh. 1e-4: float32 terms and blending of up to 100 layers, 3e-6 each (measured).
 TEST_P(EitherProjection, ConstantMediumInABox) {

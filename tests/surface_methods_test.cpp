@@ -20,6 +20,7 @@
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/either_projection.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -37,11 +38,6 @@ Renderer& gl() {
 
 Quality by(const char* surfaces, const char* method = "integral") {
     return {.method = parse_method(method), .surfaces = parse_surface_method(surfaces)};
-}
-
-Scene with_surfaces(Scene scene, std::vector<IsoSurface> list, Shading shading) {
-    scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::move(list)), shading, {}});
-    return scene;
 }
 
 std::vector<IsoSurface> three(double opacity) {
@@ -68,8 +64,7 @@ double error(const Scene& drawn, const Quality& quality, const Scene& truth, con
 }
 
 class SurfaceMethods : public testing::TestWithParam<Camera::Projection> {};
-INSTANTIATE_TEST_SUITE_P(Gl, SurfaceMethods, testing::Values(Camera::Projection::parallel, Camera::Projection::perspective),
-                         [](const auto& projection) { return projection.param == Camera::Projection::parallel ? "parallel" : "perspective"; });
+INSTANTIATE_TEST_SUITE_P(Gl, SurfaceMethods, testing_support::either_projection, testing_support::name_of_projection);
 
 // Without a medium, unlit or lit by the gradient of the cell, where in the segment a surface stands does not matter: the table is as closed
 // and as right as the exact way, for other isovalues. Float32 in the light, and the light's exponent, leave 2e-5.

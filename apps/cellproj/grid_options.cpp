@@ -41,10 +41,12 @@ void add_grid_options(CLI::App& command, SceneOptions& options) {
 
 ChosenBackend choose_grid_backend(BackendWish wish, const GridSampling& sampling, const Gpu& gpu) {
     const bool slabs = sampling.cut != GridSampling::Cut::cells;
-    if (wish == BackendWish::automatic && !slabs) return {Backend::cpu, {"backend", "cpu", "the cells of a regular grid need no projection: rays walk from one to the next"}};
-    if (wish == BackendWish::cpu) return {Backend::cpu, {"backend", "cpu", "asked for"}};
-    const Backend backend = wished_backend(wish == BackendWish::automatic ? BackendWish::gl : wish, {}, FieldsRead::one, gpu);
-    return {backend, {"backend", backend == Backend::gl_egl ? "gl_egl" : "gl_osmesa", wish == BackendWish::automatic ? "it draws slabs" : "OpenGL was asked for"}};
+    const auto chosen = [](Backend backend, const char* why) { return ChosenBackend{backend, {"backend", to_string(backend), why}}; };
+    if (wish == BackendWish::cpu) return chosen(Backend::cpu, "asked for");
+    if (wish == BackendWish::automatic && !slabs)
+        return chosen(Backend::cpu, "the cells of a regular grid need no projection: rays walk from one to the next");
+    if (wish == BackendWish::automatic) return chosen(wished_backend(BackendWish::gl, {}, FieldsRead::one, gpu), "it draws slabs");
+    return chosen(wished_backend(wish, {}, FieldsRead::one, gpu), "OpenGL was asked for");
 }
 
 DrawnAs choose_drawn_as(const SceneOptions& options, const PictureWishes& wishes) {

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "classify/segment_method.hpp"
+#include "render/cpu/backend_version.hpp"
 #include "render/cpu/classification.hpp"
 #include "render/cpu/grid_kernels.hpp"
 #include "render/cpu/grid_volume.hpp"
@@ -121,9 +122,8 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
     statistics.table_bytes = classification_->bytes();
-    statistics.backend = "cpu";
-    const int threads = oneapi::tbb::this_task_arena::max_concurrency();
-    statistics.backend_version = instruction_set() + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+    statistics.backend = to_string(Backend::cpu);
+    statistics.backend_version = backend_version();
     statistics.drawn_as = "grid";
     statistics.order = "none";  // rays meet their cells one after the other
     statistics.order_exact = true;

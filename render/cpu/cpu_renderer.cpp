@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "classify/segment_method.hpp"
+#include "render/cpu/backend_version.hpp"
 #include "render/cpu/classification.hpp"
 #include "render/cpu/kernels.hpp"
 #include "render/cpu/screen_mesh.hpp"
@@ -200,9 +201,8 @@ void CpuRenderer::describe(Statistics& statistics, const Quality& quality, const
     statistics.method = to_string(quality.method);
     statistics.target = to_string(quality.target);
     statistics.table_bytes = classification_->bytes();
-    statistics.backend = "cpu";
-    statistics.backend_version = instruction_set() + ", " + std::to_string(oneapi::tbb::this_task_arena::max_concurrency()) +
-                                 (oneapi::tbb::this_task_arena::max_concurrency() == 1 ? " thread" : " threads");
+    statistics.backend = to_string(Backend::cpu);
+    statistics.backend_version = backend_version();
     statistics.plan = plan.decisions;
     statistics.order = plan.drawing == Drawing::by_pixels ? "pixel" : "none";
     statistics.order_exact = true;

@@ -7,12 +7,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu/grid_kernels.cpp"
-// As in kernels.cpp.
-#ifdef CELLPROJ_FEW_INSTRUCTION_SETS
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_AVX2)
-#else
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
-#endif
+#include "render/cpu/instruction_sets.hpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <hwy/contrib/math/math-inl.h>
@@ -26,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace cellproj::cpu::HWY_NAMESPACE {
 
 std::size_t DrawGridTile(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
-    return !grid.axes[0].planes ? draw_grid<true>(grid, rays, shading, bend, tile) 
+    return !grid.axes[0].planes ? draw_grid<true>(grid, rays, shading, bend, tile)
                                 : draw_grid<false>(grid, rays, shading, bend, tile);
 }
 

@@ -27,11 +27,6 @@ constexpr double no_movement = 1e-6;
 
 std::size_t bricks_over(std::size_t n) { return (n + brick_side - 1) / brick_side; }
 
-float scene_value(const GridUnits& units, double s) {
-    const double normalized = units.normalized(s);
-    return std::isfinite(normalized) ? static_cast<float>(std::clamp(normalized, 0.0, 1.0)) : 0.0F;
-}
-
 // Whether anything can be seen for scalars in a range, by the number of bins before each that show something.
 class Visibility {
 public:
@@ -57,7 +52,8 @@ private:
 
 }  // namespace
 
-GridVolume::GridVolume(const Grid& grid) : units_(units_of(grid)), constant_(grid.location == FieldLocation::cells) {
+GridVolume::GridVolume(const Grid& grid)
+    : units_(units_of(grid)), mean_chord_(cellproj::mean_chord(grid, units_)), constant_(grid.location == FieldLocation::cells) {
     const GridDimensions n = grid.dimensions();
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (n.ni * n.nj * n.nk > most) {
@@ -72,13 +68,12 @@ GridVolume::GridVolume(const Grid& grid) : units_(units_of(grid)), constant_(gri
     values_.resize(grid.values.size());
     oneapi::tbb::parallel_for(std::size_t{0}, values_.size() / 65536 + 1, [&](std::size_t part) {
         const std::size_t end = std::min(values_.size(), (part + 1) * 65536);
-        for (std::size_t i = part * 65536; i < end; ++i) values_[i] = scene_value(units_, grid.values[i]);
+        for (std::size_t i = part * 65536; i < end; ++i) values_[i] = units_.kept(grid.values[i]);
     });
     std::transform(grid.blanked.begin(), grid.blanked.end(), std::back_inserter(present_),
                    [](std::uint8_t blanked) { return blanked ? 0.0F : 1.0F; });
     const bool uniform = std::all_of(grid.axes.begin(), grid.axes.end(), [](const GridAxis& axis) { return axis.spacing.has_value(); });
     std::int32_t stride = 1;
-    glm::dvec3 mean_edge;
     for (std::size_t a = 0; a < 3; ++a) {
         const GridAxis& from = grid.axes[a];
         Axis& axis = axes_[a];
@@ -88,7 +83,6 @@ GridVolume::GridVolume(const Grid& grid) : units_(units_of(grid)), constant_(gri
         cell_counts_[a] = static_cast<std::int32_t>(from.cells());
         value_strides_[a] = stride;
         stride *= static_cast<std::int32_t>(constant_ ? from.cells() : from.points());
-        mean_edge[static_cast<int>(a)] = (axis.high - axis.low) / (units_.length * static_cast<double>(from.cells()));
         if (uniform) continue;
         for (const double x : from.coordinates)
             axis.planes.push_back(static_cast<float>((x - axis.low) * axis.per_unit));
@@ -97,8 +91,6 @@ GridVolume::GridVolume(const Grid& grid) : units_(units_of(grid)), constant_(gri
             axis.per_width.push_back(width > 0 ? 1.0F / width : 0.0F);
         }
     }
-    const glm::dvec3& e = mean_edge;
-    mean_chord_ = 2 * e.x * e.y * e.z / (e.x * e.y + e.y * e.z + e.z * e.x);
     find_ranges(grid);
 }
 

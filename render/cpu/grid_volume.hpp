@@ -21,7 +21,6 @@ public:
     explicit GridVolume(const Grid& grid);
 
     const GridUnits& units() const { return units_; }
-    // Mean length of a segment over all directions in a cell of the mean size, 4·volume / surface by Cauchy's formula.
     double mean_chord() const { return mean_chord_; }
 
     // `transfer` in scene units: finds the bricks in which nothing can be seen.

@@ -11,12 +11,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu/kernels.cpp"
-// SSE4 and AVX-512 without the extras of Ice Lake do what these would do.
-#ifdef CELLPROJ_FEW_INSTRUCTION_SETS  // builds with sanitizers: AVX-512 and what the compiler may assume
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_AVX2)
-#else
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
-#endif
+#include "render/cpu/instruction_sets.hpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <hwy/cache_control.h>

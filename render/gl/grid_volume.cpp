@@ -5,7 +5,6 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 
@@ -33,25 +32,12 @@ void require_numbers(const Grid& grid) {
                  std::to_string(grid.cell_count()), "use the CPU backend (--backend cpu)"});
 }
 
-// Values that no drawn cell has may be anything: 0 then.
 Texture upload(const Grid& grid, const GridUnits& units) {
     const GridDimensions n = grid.dimensions();
     std::vector<float> texels(grid.values.size());
-    for_all(texels.size(), 65536, [&](std::size_t i) {
-        const double s = units.normalized(grid.values[i]);
-        texels[i] = std::isfinite(s) ? static_cast<float>(std::clamp(s, 0.0, 1.0)) : 0.0F;
-    });
+    for_all(texels.size(), 65536, [&](std::size_t i) { texels[i] = units.kept(grid.values[i]); });
     const std::size_t less = grid.location == FieldLocation::cells ? 1 : 0;
     return Texture::volume({n.ni - less, n.nj - less, n.nk - less}, texels);
-}
-
-// Edges add up along the axes by themselves: all cells together have the volume of the box, and faces across each axis.
-double find_mean_chord(const Grid& grid, double length) {
-    const glm::dvec3 edges = (grid.bounds().high - grid.bounds().low) / length;
-    double inverse = 0.0;
-    for (int a = 0; a < 3; ++a)
-        inverse += static_cast<double>(grid.axes[static_cast<std::size_t>(a)].cells()) / edges[a];
-    return 2.0 / inverse;  // volume xyz, surface 2·(n_x·yz + n_y·xz + n_z·xy)
 }
 
 double find_longest_chord(const Grid& grid, double length) {
@@ -67,7 +53,7 @@ double find_longest_chord(const Grid& grid, double length) {
 
 GridVolume::GridVolume(const GridScene& scene)
     : units_((require_numbers(*scene.grid), units_of(*scene.grid))),
-      mean_chord_(find_mean_chord(*scene.grid, units_.length)),
+      mean_chord_(cellproj::mean_chord(*scene.grid, units_)),
       longest_chord_(find_longest_chord(*scene.grid, units_.length)),
       values_(upload(*scene.grid, units_)) {
     set_transfer(*scene.grid, *scene.transfer);

@@ -23,7 +23,6 @@ public:
     // Per cell: 0 for those that add nothing to any picture, blanked or without emission and extinction over their scalars.
     const std::vector<std::uint8_t>& drawn() const { return drawn_; }
     const Texture& values() const { return values_; }
-    // 4·volume / surface of a cell by Cauchy's formula, in the mean over all [GridUnits::length], > 0.
     double mean_chord() const { return mean_chord_; }
     // No segment in a cell is longer [GridUnits::length].
     double longest_chord() const { return longest_chord_; }

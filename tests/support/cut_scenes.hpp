@@ -13,6 +13,7 @@
 #include "render/body_scene.hpp"
 #include "render/renderer.hpp"
 #include "render/scene.hpp"
+#include "tests/support/either_projection.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace cellproj::testing_support {
@@ -26,8 +27,6 @@ inline Renderer& gl_backend() {
     static const auto renderer = make_renderer(Backend::gl_osmesa);
     return *renderer;
 }
-
-inline std::string name_of(Camera::Projection projection) { return projection == Camera::Projection::parallel ? "parallel" : "perspective"; }
 
 // An eye in the cube; parallel views have none, and look across it.
 inline Camera inside_of_unit_cube(Camera::Projection projection) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -30,9 +31,17 @@ inline TransferFunction constant_medium(double extinction) {
     return {OpticalModel::density, {{0, {1.0, 0.5, 0.25}}}, {{0, extinction}}};
 }
 
+// Where isosurfaces are alone.
+inline TransferFunction nothing() { return constant_medium(0); }
+
 // A ramp in colour and extinction, with self-attenuation that matters (optical depth up to about 3 through the cube).
 inline TransferFunction ramp() {
     return {OpticalModel::density, {{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}}, {{0, 0.2}, {1, 4.0}}};
+}
+
+inline Scene with_surfaces(Scene scene, std::vector<IsoSurface> list, Shading shading = Shading::smooth, const Lighting& lighting = {}) {
+    scene.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::move(list)), shading, lighting});
+    return scene;
 }
 
 // 0..1 over the unit cube.
