@@ -14,6 +14,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "render/ray_frame.hpp"
+
 namespace cellproj {
 
 namespace {
@@ -37,17 +39,6 @@ int widest_axis(const std::vector<Site>& sites, std::size_t begin, std::size_t e
     }
     const glm::vec3 extent = high - low;
     return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-}
-
-// A projected vertex: across the ray and along it.
-struct FramePoint {
-    double u, v, t;
-};
-
-// a.u·b.v − a.v·b.u within 1.5 ulp, so with the right sign (Kahan; header).
-double cross_product(const FramePoint& a, const FramePoint& b) {
-    const double product = a.v * b.u;
-    return std::fma(a.u, b.v, -product) + std::fma(-a.v, b.u, product);
 }
 
 int sign(double x) { return (x > 0) - (x < 0); }
@@ -79,24 +70,10 @@ struct FaceHit {
 
 }  // namespace
 
-// The ray's axis and two unit vectors across it.
-struct RayIndex::Frame {
-    glm::dvec3 origin, x, y, z;
+struct RayIndex::Frame : RayFrame {
     double start;
 
-    explicit Frame(const ViewRay& ray) : origin(ray.origin), z(ray.direction), start(ray.start) {
-        const glm::dvec3 a = glm::abs(z);
-        const glm::dvec3 least = a.x <= a.y && a.x <= a.z ? glm::dvec3(1, 0, 0)
-                                 : a.y <= a.z             ? glm::dvec3(0, 1, 0)
-                                                          : glm::dvec3(0, 0, 1);
-        x = glm::normalize(glm::cross(z, least));
-        y = glm::cross(z, x);
-    }
-
-    FramePoint see(const glm::dvec3& point) const {
-        const glm::dvec3 p = point - origin;
-        return {glm::dot(p, x), glm::dot(p, y), glm::dot(p, z)};
-    }
+    explicit Frame(const ViewRay& ray) : RayFrame(ray), start(ray.start) {}
 };
 
 RayIndex::RayIndex(const TetMesh& mesh) {

@@ -3,50 +3,23 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include <glm/geometric.hpp>
+
+#include "render/ray_frame.hpp"
 
 namespace cellproj {
 
 namespace {
 
-// a·d − b·c, of which the sign is right (Kahan).
-double difference_of_products(double a, double d, double b, double c) {
-    const double product = b * c;
-    return std::fma(a, d, -product) + std::fma(-b, c, product);
-}
-
-// Points in the frame of the ray: x and y across it, z along it from its origin.
-struct RayFrame {
-    glm::dvec3 across, up, along, origin;
-
-    RayFrame(const ViewRay& ray, const glm::dvec3& middle) : along(ray.direction), origin(ray.origin), middle_(middle) {
-        const glm::dvec3 size = glm::abs(along);
-        const glm::dvec3 axis = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0) : size.y <= size.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
-        across = glm::normalize(glm::cross(along, axis));
-        up = glm::cross(along, across);
-    }
-    glm::dvec3 operator()(const glm::dvec3& point) const {
-        const glm::dvec3 p = (point - middle_) - origin;
-        return {glm::dot(p, across), glm::dot(p, up), glm::dot(p, along)};
-    }
-
-private:
-    glm::dvec3 middle_;
-};
-
-// Where the ray, the z-axis, meets a triangle; nothing where it does not, or only edge-on.
-std::optional<double> meet(const std::array<glm::dvec3, 3>& p) {
+// Where the ray meets a triangle; nothing where it does not, or only edge-on.
+std::optional<double> meet(const std::array<FramePoint, 3>& p) {
     std::array<double, 3> w;  // of the corner opposite to each edge
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 &a = p[(i + 1) % 3], &b = p[(i + 2) % 3];
-        w[i] = difference_of_products(a.x, b.y, a.y, b.x);
-    }
+    for (std::size_t i = 0; i < 3; ++i) w[i] = cross_product(p[(i + 1) % 3], p[(i + 2) % 3]);
     const auto [low, high] = std::minmax({w[0], w[1], w[2]});
     if ((low < 0 && high > 0) || (low == 0 && high == 0)) return std::nullopt;
-    return (w[0] * p[0].z + w[1] * p[1].z + w[2] * p[2].z) / (w[0] + w[1] + w[2]);
+    return (w[0] * p[0].t + w[1] * p[1].t + w[2] * p[2].t) / (w[0] + w[1] + w[2]);
 }
 
 }  // namespace
@@ -65,11 +38,11 @@ RayWindow ray_window(const Scene& scene, const glm::dvec3& middle, const ViewRay
         if (speed == 0 && ahead < 0) nothing();
     }
     if (!scene.bodies) return window;
-    const RayFrame frame(ray, middle);
-    std::vector<glm::dvec3> places;
+    const RayFrame frame(ray);
+    std::vector<FramePoint> places;
     for (const Body& body : scene.bodies->bodies) {
         places.clear();
-        for (const glm::dvec3& point : body.points) places.push_back(frame(point));
+        for (const glm::dvec3& point : body.points) places.push_back(frame.see(point - middle));
         for (const auto& triangle : body.triangles) {
             const auto t = meet({places[triangle[0]], places[triangle[1]], places[triangle[2]]});
             if (!t || !(*t >= ray.start) || (window.body && !(*t < window.body->t))) continue;
