@@ -19,6 +19,7 @@
 
 #include "render/cpu/segment_light-inl.hpp"
 #include "render/cpu/table_light-inl.hpp"
+#include "render/cpu/pack_lanes-inl.hpp"
 #include "render/cpu/cell_planes-inl.hpp"
 #include "render/cpu/window_drawing-inl.hpp"
 #include "render/cpu/tile_drawing-inl.hpp"

@@ -208,10 +208,11 @@ HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits, flo
             back = hn::IfThenElse(back_2, hn::Max(back, two), back);
             const auto in_box = hn::And(hn::Lt(lane_x, hn::Set(di, width - x)), in_rows);
             const auto hit = hn::And(hn::Gt(surfaces ? hn::Add(front, hn::Set(d, margin)) : front, back), hn::RebindMask(d, in_box));
-            hn::StoreU(hn::Compress(front, hit), d, hits.front + count);
-            hn::StoreU(hn::Compress(back, hit), d, hits.back + count);
-            hn::StoreU(hn::Compress(hn::Add(lane_place, hn::Set(di, x + tile_side * y)), hn::RebindMask(di, hit)), di, hits.place + count);
-            count += hn::CountTrue(d, hit);
+            const LanePacker<decltype(d)> packer(d, hit);
+            packer.store(d, front, hits.front + count);
+            packer.store(d, back, hits.back + count);
+            packer.store(di, hn::Add(lane_place, hn::Set(di, x + tile_side * y)), hits.place + count);
+            count += packer.count();
         }
     }
     hits.count = count;
