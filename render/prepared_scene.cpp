@@ -258,16 +258,17 @@ ViewOrder PreparedScene::order(const Camera& camera, ImageSize size, std::option
 }
 
 void PreparedScene::judge(const ViewOrder& order, const OrderReport& report, const Camera& camera, ImageSize size,
-                          std::size_t check_rays, Statistics& statistics) {
+                          const Quality& quality, Statistics& statistics) {
     statistics.order = to_string(report.method);
     statistics.order_exact = report.exact;
     statistics.counts.unordered = report.unordered;
     statistics.counts.cycles = report.cycles;
     statistics.counts.split_cells = report.split_cells;
-    statistics.counts.order_violations = sorter().count_violations(order, camera.viewpoint());
-    if (check_rays == 0) return;
+    statistics.counts.order_violations.reset();
+    if (quality.check_neighbours) statistics.counts.order_violations = sorter().count_violations(order, camera.viewpoint());
+    if (quality.check_rays == 0) return;
     if (!ray_index_) ray_index_ = std::make_unique<const RayIndex>(*scene_.mesh);
-    statistics.order_check = check_order(*ray_index_, visible_.size(), order, camera, size, check_rays);
+    statistics.order_check = check_order(*ray_index_, visible_.size(), order, camera, size, quality.check_rays);
 }
 
 }  // namespace cellproj

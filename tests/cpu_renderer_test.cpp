@@ -223,6 +223,16 @@ TEST(CpuRenderer, AnyNumberOfThreadsGivesTheSameBits) {
     }
 }
 
+TEST(CpuRenderer, CountsWrongNeighboursUnlessToldNotTo) {
+    const Scene scene = scene_of(grid_mesh(4, 0.2), waves, ramp());
+    for (const bool asked : {true, false}) {
+        Statistics statistics;
+        cpu().render(scene, view_of_unit_cube(Projection::perspective), small, {.check_neighbours = asked}, &statistics);
+        EXPECT_EQ(statistics.counts.order_violations, asked ? std::optional<std::size_t>(0) : std::nullopt);
+        EXPECT_TRUE(statistics.order_exact);  // as the sorter says
+    }
+}
+
 TEST(CpuRenderer, EveryInstructionSetGivesTheSamePicture) {
     const std::vector<std::string> sets = cpu::instruction_sets();
     ASSERT_FALSE(sets.empty());

@@ -200,7 +200,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     describe(statistics, quality, plan);
     if (out) {  // the proof of the order is no part of the frame
         if (plan.sorts()) {
-            prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
+            prepared_->judge(order, order_report, camera, size, quality, statistics);
             tell_order(statistics.plan, statistics.order, statistics.order_exact);
         }
         *out = std::move(statistics);
