@@ -23,6 +23,15 @@ void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfac
     if (surfaces) refuse("--iso", "no isosurfaces for a regular grid", "some", as_tets);
 }
 
+void require_grid_cut(const GridQuality& quality, const RayCuts& cuts) {
+    if (!cuts.any()) return;
+    const auto refuse = [&](const char* option, const char* expected, const std::string& found, const char* advice) {
+        throw Error({ErrorKind::option, option, std::string(expected) + " for a regular grid with " + in_words(cuts), found, advice});
+    };
+    if (quality.sampling.cut != GridSampling::Cut::cells) refuse("--sampling", "cells", to_string(quality.sampling), "leave it out");
+    if (light_at_vertices(quality.method)) refuse("--method", "a method of light per pixel", to_string(quality.method), "use integral");
+}
+
 std::unique_ptr<GridRenderer> make_grid_renderer(Backend backend, const RendererOptions& options) {
     switch (backend) {
         case Backend::gl_osmesa:

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "classify/segment_method.hpp"
@@ -17,6 +18,8 @@
 #include "render/cpu/classification.hpp"
 #include "render/cpu/grid_kernels.hpp"
 #include "render/cpu/grid_volume.hpp"
+#include "render/depth_window.hpp"
+#include "render/plan.hpp"
 
 namespace cellproj::cpu {
 
@@ -70,7 +73,7 @@ public:
 private:
     void prepare_here(const GridScene& scene, const GridQuality& quality);
     Image render_here(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality, Statistics* out);
-    std::size_t draw(Image& image, const ScreenTransform& transform) const;
+    std::size_t draw(Image& image, const ScreenTransform& transform, std::span<const DepthInterval> kept) const;
 
     oneapi::tbb::task_arena arena_;
     GridScene scene_;
@@ -112,7 +115,10 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.ms.plan = total.ms();
     Image image(size.width, size.height);
     const Stopwatch drawing;
-    statistics.counts.fragments = draw(image, ScreenTransform(camera, size));
+    std::optional<DepthWindow> window;
+    if (ray_cuts(scene).any()) window.emplace(scene, camera, size, volume_->units().length);
+    statistics.counts.fragments = draw(image, ScreenTransform(camera, size), window ? window->pixels() : std::span<const DepthInterval>{});
+    if (window) window->add_opaque(image);
     statistics.ms.draw = drawing.ms();
     statistics.ms.total = total.ms();
     if (!out) return image;
@@ -127,12 +133,13 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.drawn_as = "grid";
     statistics.order = "none";  // rays meet their cells one after the other
     statistics.order_exact = true;
+    statistics.plan = {decide_rays(ray_cuts(scene))};
     *out = std::move(statistics);
     return image;
 }
 
 // Each tile by one task: the same picture for any number of threads. Returns the number of segments.
-std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform) const {
+std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform, std::span<const DepthInterval> kept) const {
     const GridCells cells = volume_->cells();
     Shading shading = classification_->shading();
     if (!classification_->may_be_opaque()) shading.opaque = 1.0F;
@@ -145,7 +152,7 @@ std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform
             const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
                             static_cast<std::size_t>(image.width)};
             GridRays rays;
-            volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, rays);
+            volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, kept, rays);
             segments += draw_grid_tile(cells, rays, shading, bend_, tile);
         },
         oneapi::tbb::simple_partitioner());
