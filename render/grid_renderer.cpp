@@ -26,7 +26,7 @@ void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfac
 void require_grid_cut(const GridQuality& quality, const RayCuts& cuts) {
     if (!cuts.any()) return;
     const auto refuse = [&](const char* option, const char* expected, const std::string& found, const char* advice) {
-        throw Error({ErrorKind::option, option, std::string(expected) + " for a regular grid with " + in_words(cuts), found, advice});
+        throw Error({ErrorKind::option, option, std::string(expected) + " for a regular grid with " + describe(cuts), found, advice});
     };
     if (quality.sampling.cut != GridSampling::Cut::cells) refuse("--sampling", "cells", to_string(quality.sampling), "leave it out");
     if (light_at_vertices(quality.method)) refuse("--method", "a method of light per pixel", to_string(quality.method), "use integral");

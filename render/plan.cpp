@@ -127,7 +127,7 @@ Decision decide_gradients(const SceneFacts& facts) {
 
 Decision decide_rays(const RayCuts& cuts) {
     if (!cuts.any()) return {"rays", "whole", "nothing is clipped, and there are no bodies and no slices"};
-    return {"rays", "cut", in_words(cuts) + ": a part of each ray is left"};
+    return {"rays", "cut", describe(cuts) + ": a part of each ray is left"};
 }
 
 Plan plan_scene(const SceneFacts& facts, const Quality& quality, Backend backend, const PlanRules& rules) {
@@ -163,7 +163,7 @@ Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSi
     }
     if (plan.drawing == Drawing::nothing && cuts.opaque()) {
         const auto order = std::ranges::find(plan.decisions, "order", &Decision::rule);
-        order->chosen = "none: " + in_words(cuts, true) + " alone";
+        order->chosen = "none: " + describe(cuts, true) + " alone";
         order->why += "; the nearest one of each pixel is seen";
     }
     plan.decisions.push_back(decide_rays(cuts));

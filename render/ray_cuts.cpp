@@ -15,7 +15,7 @@ RayCuts count_cuts(const ClipRegion* clip, const BodyScene* bodies, const SliceS
     return cuts;
 }
 
-std::string in_words(const RayCuts& cuts, bool opaque_alone) {
+std::string describe(const RayCuts& cuts, bool opaque_alone) {
     std::string text;
     const auto add = [&](std::size_t count, const std::string& one, const std::string& many) {
         if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);

@@ -24,6 +24,6 @@ struct RayCuts {
 RayCuts count_cuts(const ClipRegion* clip, const BodyScene* bodies, const SliceScene* slices);
 
 // "2 clipping planes, 1 slice"; those that are opaque alone if so asked.
-std::string in_words(const RayCuts& cuts, bool opaque_alone = false);
+std::string describe(const RayCuts& cuts, bool opaque_alone = false);
 
 }  // namespace cellproj

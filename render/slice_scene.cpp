@@ -87,7 +87,7 @@ std::optional<double> scalar_at(const Grid& grid, const Slice& slice, const glm:
     return std::clamp(interpolate(corners, u), low, high);
 }
 
-bool meets(const Slice& slice, const Bounds& box) {
+bool slice_meets(const Slice& slice, const Bounds& box) {
     const glm::dvec3 normal = unit_normal(slice.plane);
     bool above = false, below = false;
     for (int corner = 0; corner < 8; ++corner) {

@@ -48,7 +48,7 @@ void validate(const SliceScene& scene);
 std::optional<double> scalar_at(const Grid& grid, const Slice& slice, const glm::dvec3& point);
 
 // Whether a slice meets the box.
-bool meets(const Slice& slice, const Bounds& box);
+bool slice_meets(const Slice& slice, const Bounds& box);
 
 // What counts as 1 where a function's colours are shown by themselves: an emitter's are per length, and relative to its brightest channel; 1 in
 // the density model.

@@ -54,7 +54,7 @@ void add_slices(const CutOptions& options, std::shared_ptr<const TransferFunctio
                        : cut_slices(*scene.mesh, *scene.field, scene.opacity_field.get(), std::move(slices), std::move(colors));
     const Bounds box = bounds(scene.mesh->points);
     for (std::size_t i = 0; i < options.slices.size(); ++i) {
-        if (grid ? meets(sliced.slices[i], grid->bounds()) : !sliced.cuts[i].empty()) continue;
+        if (grid ? slice_meets(sliced.slices[i], grid->bounds()) : !sliced.cuts[i].empty()) continue;
         std::fprintf(stderr, "cellproj: warning: --slice %s: nothing of the mesh is in this plane; the mesh lies in %s\n", options.slices[i].c_str(), in_words(box).c_str());
     }
     scene.slices = std::make_shared<const SliceScene>(std::move(sliced));
