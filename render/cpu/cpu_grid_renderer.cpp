@@ -18,6 +18,7 @@
 #include "render/cpu/classification.hpp"
 #include "render/cpu/grid_kernels.hpp"
 #include "render/cpu/grid_volume.hpp"
+#include "render/grid_plan.hpp"
 #include "render/grid_surfaces.hpp"
 
 namespace cellproj::cpu {
@@ -150,6 +151,7 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.drawn_as = "grid";
     statistics.order = "none";  // rays meet their cells one after the other
     statistics.order_exact = true;
+    statistics.plan = plan_of(scene, quality, {Backend::cpu, statistics.counts.cells, statistics.counts.drawn, surfaces_.medium});
     *out = std::move(statistics);
     return image;
 }
