@@ -92,6 +92,18 @@ double outside(double value, double low, double high) {
 
 }  // namespace
 
+PixelTruth truth_of_pixel(PixelId pixel, double slack, const std::function<Light(const glm::dvec2&)>& light_at) {
+    const Light at_center = light_at(center(pixel));
+    PixelTruth truth{pixel, at_center, at_center, at_center};
+    if (!(slack > 0)) return truth;
+    for (const glm::dvec2& offset : {glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
+        const Light beside = light_at(center(pixel) + slack * offset);
+        truth.low = {glm::min(truth.low.color, beside.color), std::min(truth.low.opacity, beside.opacity)};
+        truth.high = {glm::max(truth.high.color, beside.color), std::max(truth.high.opacity, beside.opacity)};
+    }
+    return truth;
+}
+
 Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene_(std::move(scene)), index_(std::move(index)) {
     validate(scene_);
     if (!index_) index_ = std::make_shared<RayIndex>(*scene_.mesh);
@@ -189,16 +201,7 @@ std::vector<PixelTruth> Reference::pixels(const Camera& camera, ImageSize size, 
     std::vector<PixelTruth> truths(pixels.size());
     const auto look = [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            PixelTruth& truth = truths[i];
-            truth.pixel = pixels[i];
-            truth.light = light(index_->ray(camera, size, center(pixels[i])));
-            truth.low = truth.high = truth.light;
-            if (!(slack > 0)) continue;
-            for (const glm::dvec2& offset : {glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
-                const Light beside = light(index_->ray(camera, size, center(pixels[i]) + slack * offset));
-                truth.low = {glm::min(truth.low.color, beside.color), std::min(truth.low.opacity, beside.opacity)};
-                truth.high = {glm::max(truth.high.color, beside.color), std::max(truth.high.opacity, beside.opacity)};
-            }
+            truths[i] = truth_of_pixel(pixels[i], slack, [&](const glm::dvec2& place) { return light(index_->ray(camera, size, place)); });
         }
     };
     oneapi::tbb::parallel_for(Range(0, pixels.size(), 64), look);

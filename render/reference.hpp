@@ -22,10 +22,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include "mesh/gradient.hpp"
@@ -51,6 +53,10 @@ struct PixelTruth {
     Light light;      // associated
     Light low, high;  // channel by channel
 };
+
+// Of a pixel by the light at places on the screen [pixels]. With `slack` > 0, low and high take in that at the four places (±slack, ±slack)
+// from its centre.
+PixelTruth truth_of_pixel(PixelId pixel, double slack, const std::function<Light(const glm::dvec2&)>& light_at);
 
 // The slack of Reference::pixels for pictures whose vertices were put on a rasterizer's grid of 1/256 of a pixel [pixels].
 constexpr double rasterizer_slack = 1.0 / 512;
