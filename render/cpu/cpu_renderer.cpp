@@ -140,17 +140,17 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     Statistics statistics;
     const Stopwatch total;
     prepare_here(scene, quality);
-    const Frame frame{scene, camera, size, plan_view(plan_, prepared_->facts(), camera, size, DepthWindow::is_needed(scene), rules_)};
+    const Frame frame{scene, camera, size, plan_view(plan_, prepared_->facts(), camera, size, ray_cuts(scene), rules_)};
     Image image(size.width, size.height);
     statistics.ms.plan = total.ms();
     SortedCells sorted;
     if (frame.plan.drawing == Drawing::nothing) {
-        if (const auto window = window_of(frame)) window->add_bodies(image);
+        if (const auto window = window_of(frame)) window->add_opaque(image);
     } else {
         const std::optional<DepthWindow> window = sort_cells(frame, quality, sorted, statistics);
         const auto items = items_of(frame, sorted.order, window, statistics);
         draw_regions(image, frame.plan, items, statistics);
-        if (window) window->add_bodies(image);
+        if (window) window->add_opaque(image);
     }
     statistics.ms.total = total.ms();
     if (!out) return image;
@@ -165,7 +165,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
 }
 
 std::optional<DepthWindow> CpuRenderer::window_of(const Frame& frame) const {
-    if (!DepthWindow::is_needed(frame.scene)) return {};
+    if (!ray_cuts(frame.scene).any()) return {};
     return DepthWindow(frame.scene, frame.camera, frame.size, prepared_->units().length);
 }
 
