@@ -27,6 +27,8 @@ void validate(const TetMesh& mesh, const ScalarField& field) {
 
 bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
 
+bool has_lit_medium(const Scene& scene) { return scene.surfaces && scene.surfaces->lit_medium && scene.surfaces->shading != Shading::unlit; }
+
 void validate(const Scene& scene) {
     assert(scene.mesh && scene.field && scene.transfer);
     const ScalarField& field = *scene.field;
@@ -34,9 +36,9 @@ void validate(const Scene& scene) {
     if (scene.opacity_field) validate(*scene.mesh, *scene.opacity_field);
     if (scene.clip) validate(*scene.clip, "clip region");
     if (scene.bodies) validate(*scene.bodies);
-    if (!has_surfaces(scene)) return;
+    if (!has_surface_scene(scene)) return;
     if (field.location == FieldLocation::cells) {
-        throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",
+        throw Error({ErrorKind::option, (has_surfaces(scene) ? "isosurfaces of field \"" : "light by the gradient of field \"") + field.name + "\"", "a field on points",
                      "one on cells, constant in each", "carry it to the points first (--cell-values averaged)"});
     }
     validate(scene.surfaces->lighting, "lights");

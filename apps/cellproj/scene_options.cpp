@@ -118,12 +118,12 @@ void check_colors(const SceneOptions& options) {
     }
 }
 
-// Isosurfaces alone are what is asked for unless something tells of the volume around them: its colours are then theirs.
+// Isosurfaces alone are what is asked for, where there are some, unless something tells of the volume around them: its colours are then theirs.
 void add_surfaces(const SceneOptions& options, Scene& scene) {
     auto surfaces = std::make_shared<const SurfaceScene>(parse_surfaces(options.iso, *scene.transfer));
     warn_of_missing(surfaces->isosurfaces, *scene.field);
     scene.surfaces = std::move(surfaces);
-    if (options.iso.volume || options.opacity_chosen) return;
+    if (options.iso.volume || options.iso.shade_volume || options.opacity_chosen) return;
     const TransferFunction nothing(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}});
     scene.transfer = std::make_shared<const TransferFunction>(nothing);
 }
@@ -156,8 +156,7 @@ ImageSize require_possible(const SceneOptions& options) {
     parse_surfaces(options.iso, TransferFunction(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}}));
     parse_region(options.cuts);
     for (const std::string& surface : options.cuts.surfaces) parse_body(surface);
-    if (!options.iso.light.empty() && !options.iso.any() && options.cuts.surfaces.empty())
-        throw Error({ErrorKind::option, "--light", "isosurfaces or bodies to be lit", "none", "give --iso or --surface"});
+    require_shaded(options.iso, !options.cuts.surfaces.empty());
     return parse_size(options.size);
 }
 
@@ -176,7 +175,7 @@ LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as) {
                 .field = field,
                 .transfer = choose_transfer(options, input, regular.get(), *field, opacity.get()),
                 .opacity_field = opacity};
-    if (options.iso.any()) add_surfaces(options, scene);
+    if (options.iso.any_shaded()) add_surfaces(options, scene);
     add_cuts(options.cuts, parse_lighting(options.iso), scene);
     std::optional<GridScene> grid;
     if (regular) grid = GridScene{std::move(regular), scene.transfer, scene.surfaces};

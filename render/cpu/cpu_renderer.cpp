@@ -141,6 +141,9 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     ViewOrder order;
     const Drawing drawing = plan.drawing;
     std::optional<DepthWindow> window;
+    // Of surfaces alone, what they do not cross is not looked at.
+    const bool nearest = drawing == Drawing::nearest_surfaces;
+    const std::span<const CellId> drawn = nearest ? prepared_->surfaces()->crossed() : std::span<const CellId>();
     oneapi::tbb::parallel_invoke(
         [&] {
             // Pixels that sort their own fragments want cells nearly sorted, no more.
@@ -148,8 +151,8 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
             if (plan.sorts()) order = prepared_->order(camera, size, method, &order_report);
         },
         [&] {
-            mesh_.set_view(camera, size);
-            bins_.find_cells(mesh_.cells(), first);
+            mesh_.set_view(camera, size, nearest ? prepared_->surfaces()->crossed_points() : std::span<const VertexId>());
+            bins_.find_cells(mesh_.cells(), first, drawn);
         },
         [&] {
             if (DepthWindow::is_needed(scene)) window.emplace(scene, camera, size, prepared_->units().length);
@@ -160,7 +163,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     if (drawing == Drawing::sum) order = prepared_->any_order();
     if (plan.blends() && !plan.sorts()) order.items = mesh_.nearly_sorted(prepared_->any_order().items);
     // In any order; nearly sorted ones hide most of each other.
-    if (drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(prepared_->surfaces()->crossed());
+    if (nearest) order.items = mesh_.nearly_sorted(drawn);
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
     if (prepared_->surfaces()) trails_.assign(image.pixels.size(), {});
@@ -171,7 +174,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     for (int y = 0; y < size.height; y += first.height)
         for (int x = 0; x < size.width; x += first.width) {
             const Region region = region_at(x, y);
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, plan.blends() && may_be_opaque());
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, plan.blends() && may_be_opaque(), drawn);
             draw(image, region, drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }

@@ -28,6 +28,25 @@ SurfaceLighting for_tiles(const Lighting& lighting) {
     return result;
 }
 
+SurfaceRun run_of(const PreparedSurfaces& surfaces, bool rising) {
+    SurfaceRun run;
+    const auto append = [&](float value, const glm::dvec3& color, double opacity) {
+        run.value.push_back(value);
+        run.red.push_back(static_cast<float>(opacity * color.r));
+        run.green.push_back(static_cast<float>(opacity * color.g));
+        run.blue.push_back(static_cast<float>(opacity * color.b));
+        run.opacity.push_back(static_cast<float>(opacity));
+    };
+    const std::size_t count = surfaces.values().size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t surface = rising ? i : count - 1 - i;
+        const IsoSurface& material = surfaces.scene().isosurfaces.surfaces()[surface];
+        append(surfaces.values()[surface], seen_color(material, rising), material.opacity);
+    }
+    for (std::size_t i = 0; i < SurfaceRun::padding; ++i) append(0.0F, glm::dvec3(0), 0.0);
+    return run;
+}
+
 // The corners' weights at a place in the tetrahedron, by volumes; those of its middle where it has none.
 std::array<double, 4> weights_at(const std::array<EyeVertex, 4>& corners, const glm::dvec3& p) {
     const auto volume = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
@@ -74,11 +93,12 @@ void ScreenMesh::set_surfaces() {
     if (!prepared) return;
     const SurfaceScene& scene = prepared->scene();
     surfaces_.values = prepared->values();
-    for (const IsoSurface& surface : scene.isosurfaces.surfaces())
-        surfaces_.materials.push_back({surface.color, surface.back_color.value_or(surface.color), static_cast<float>(surface.opacity)});
+    surfaces_.rising = run_of(*prepared, true);
+    surfaces_.falling = run_of(*prepared, false);
     surfaces_.shading = scene.shading;
     surfaces_.lighting = for_tiles(scene.lighting);
     surfaces_.medium = prepared_->has_medium();
+    surfaces_.lit_medium = prepared_->lights_medium();
     levels_.assign(prepared->levels().begin(), prepared->levels().end());
     gradients_.assign(prepared->gradients().begin(), prepared->gradients().end());
 }
@@ -89,7 +109,7 @@ void ScreenMesh::set_visible() {
     cells_.visible = all ? std::span<const std::uint8_t>() : std::span(visible);
 }
 
-void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
+void ScreenMesh::set_view(const Camera& camera, ImageSize size, std::span<const VertexId> points) {
     const TetMesh& mesh = *prepared_->scene().mesh;
     const double unit = prepared_->units().length;
     eye_ = camera.eye;
@@ -119,9 +139,10 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
     }
     std::atomic<bool> near_points = false;
     using Range = oneapi::tbb::blocked_range<std::size_t>;
-    oneapi::tbb::parallel_for(Range(0, mesh.points.size(), 4096), [&](const Range& range) {
+    oneapi::tbb::parallel_for(Range(0, points.empty() ? mesh.points.size() : points.size(), 4096), [&](const Range& range) {
         bool behind = false;
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        for (std::size_t number = range.begin(); number != range.end(); ++number) {
+            const std::size_t i = points.empty() ? number : points[number];
             const glm::dvec3 place = transform_.to_eye((mesh.points[i] - eye_) / unit);
             if (precise && has_place(place)) {
                 precise_points_[i] = precisely_on_screen(place);

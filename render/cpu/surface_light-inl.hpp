@@ -20,7 +20,7 @@ struct SurfaceHits {
     using List = float[capacity + CellPlanes::columns];
 
     HWY_ALIGN List gradient[3];
-    HWY_ALIGN List color[3];   // of the side that is seen
+    HWY_ALIGN List color[3];   // of the side that is seen, associated
     HWY_ALIGN List opacity;
     HWY_ALIGN std::int32_t pixel[capacity + CellPlanes::columns];  // x + tile_side·y
     HWY_ALIGN float light[4 * (capacity + CellPlanes::columns)];   // for shade_hits to fill: associated colour and opacity
@@ -80,10 +80,14 @@ HWY_INLINE void add_light(D d, const SurfaceLighting::Light& light, float expone
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
     const Direction<V> l1 = light.headlight ? eye : direction(d, light.towards);
     const V facing = dot(n, l1);
-    hn::Mask<D> has_middle;
-    const Direction<V> l2 = unit(d, Direction<V>{hn::Add(l1.x, eye.x), hn::Add(l1.y, eye.y), hn::Add(l1.z, eye.z)}, has_middle);
-    const V cosine = hn::Min(dot(n, l2), one);
-    const auto shines = hn::And(has_middle, hn::Gt(cosine, hn::Set(d, 1e-30F)));
+    V cosine = facing;  // with the middle between the light and the eye
+    if (!light.headlight) {
+        hn::Mask<D> has_middle;
+        const Direction<V> l2 = unit(d, Direction<V>{hn::Add(l1.x, eye.x), hn::Add(l1.y, eye.y), hn::Add(l1.z, eye.z)}, has_middle);
+        cosine = hn::IfThenElseZero(has_middle, dot(n, l2));
+    }
+    cosine = hn::Min(cosine, one);
+    const auto shines = hn::Gt(cosine, hn::Set(d, 1e-30F));
     const V power = hn::Mul(hn::Log(d, hn::IfThenElse(shines, cosine, one)), hn::Set(d, exponent));
     const V highlight = hn::IfThenElseZero(shines, hn::Exp(d, hn::Max(power, hn::Set(d, -100.0F))));
     const auto lit = hn::Gt(facing, zero);
@@ -91,6 +95,18 @@ HWY_INLINE void add_light(D d, const SurfaceLighting::Light& light, float expone
     for (int channel = 0; channel < 3; ++channel)
         sum[channel] = hn::MulAdd(hn::Set(d, light.diffuse[channel]), diffuse,
                                   hn::MulAdd(hn::Set(d, light.specular[channel]), specular, sum[channel]));
+}
+
+// What of its colour a place with this gradient reflects, by channel. `eye` of length 1.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void reflect(D d, const ScreenSurfaces& surfaces, const Direction<V>& gradient, const Direction<V>& eye, V (&shares)[3]) {
+    const V one = hn::Set(d, 1.0F);
+    hn::Mask<D> some;
+    Direction<V> n = scaled(unit(d, gradient, some), hn::Set(d, -1.0F));  // the front side is that of the lower scalars
+    if (surfaces.lighting.two_sided) n = scaled(n, hn::CopySign(one, dot(n, eye)));
+    for (int channel = 0; channel < 3; ++channel) shares[channel] = hn::Set(d, surfaces.lighting.ambient[channel]);
+    for (const SurfaceLighting::Light& light : surfaces.lighting.lights) add_light(d, light, surfaces.lighting.exponent, n, eye, shares);
+    for (V& channel : shares) channel = hn::IfThenElse(some, channel, one);  // without a normal there is nothing to shade
 }
 
 // The light of all hits. (tile_x, tile_y): the tile's first pixel centre.
@@ -110,16 +126,10 @@ HWY_NOINLINE void shade_hits(D d, const ScreenCells& cells, float tile_x, float 
         if (surfaces.shading != SurfaceShading::unlit) {
             const Direction<V> gradient{hn::Load(d, hits.gradient[0] + begin), hn::Load(d, hits.gradient[1] + begin),
                                         hn::Load(d, hits.gradient[2] + begin)};
-            const Direction<V> eye = to_eye(d, cells, tile_x, tile_y, hits.pixel + begin);
-            hn::Mask<D> some;
-            Direction<V> n = scaled(unit(d, gradient, some), hn::Set(d, -1.0F));  // the front side is that of the lower scalars
-            if (surfaces.lighting.two_sided) n = scaled(n, hn::CopySign(one, dot(n, eye)));
-            for (int channel = 0; channel < 3; ++channel) sum[channel] = hn::Set(d, surfaces.lighting.ambient[channel]);
-            for (const SurfaceLighting::Light& light : surfaces.lighting.lights) add_light(d, light, surfaces.lighting.exponent, n, eye, sum);
-            for (V& channel : sum) channel = hn::IfThenElse(some, channel, one);  // without a normal there is nothing to shade
+            reflect(d, surfaces, gradient, to_eye(d, cells, tile_x, tile_y, hits.pixel + begin), sum);
         }
         for (int channel = 0; channel < 3; ++channel)
-            sum[channel] = hn::Mul(opacity, hn::Mul(sum[channel], hn::Load(d, hits.color[channel] + begin)));
+            sum[channel] = hn::Mul(sum[channel], hn::Load(d, hits.color[channel] + begin));
         hn::StoreInterleaved4(sum[0], sum[1], sum[2], opacity, d, hits.light + 4 * begin);
     }
 }
