@@ -79,10 +79,8 @@ SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& c
 }
 
 void require_shaded(const IsoOptions& options, bool bodies) {
-    if (options.shade_volume && options.shading == "unlit")
-        throw Error({ErrorKind::option, "--shade-volume", "--shading smooth or flat", "unlit", "leave one of both out"});
-    if (options.shading_chosen && !options.any_shaded())
-        throw Error({ErrorKind::option, "--shading", "isosurfaces or a volume to be shaded", "none", "give --iso or --shade-volume"});
+    if (options.shade_volume && options.shading == "unlit") throw CLI::ExcludesError("--shade-volume", "--shading unlit");
+    if (options.shading_chosen && !options.any_shaded()) throw CLI::RequiresError("--shading", "--iso or --shade-volume");
     if (!options.light.empty() && !options.any_shaded() && !bodies)
         throw Error({ErrorKind::option, "--light", "isosurfaces, bodies or a volume to be lit", "none", "give --iso, --surface or --shade-volume"});
 }

@@ -42,7 +42,8 @@ SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& c
 // --light, or a headlight. Throws Error (option) for a direction without length.
 Lighting parse_lighting(const IsoOptions& options);
 
-// Throws Error (option) for --shading or --light without anything to be shaded; `bodies`: whether there are some.
+// Throws CLI::ParseError for --shading without anything to be shaded or with nothing to shade it by, Error (option) for --light without anything
+// to be lit; `bodies`: whether there are some.
 void require_shaded(const IsoOptions& options, bool bodies);
 
 // Tells of isovalues that the field does not reach.

@@ -294,6 +294,25 @@ HWY_INLINE glm::vec4 layer_of(const ScreenSurfaces& surfaces, std::int32_t surfa
     return layer_at(rising ? surfaces.rising : surfaces.falling, surfaces.place(surface, rising));
 }
 
+// Its stretch of medium.
+template <class D>
+HWY_INLINE void add_medium(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, const RayPiece& piece) {
+    SurfaceTile& s = *tile.surfaces;
+    if (s.pieces.count == Fragments::capacity) composite_pieces(d, cells, shading, tile);
+    const std::size_t i = s.pieces.count++;
+    s.pieces.front[i] = piece.front;
+    s.pieces.back[i] = piece.back;
+    s.pieces.length[i] = piece.length;
+    s.pieces.pixel[i] = piece.pixel;
+    s.hit[i] = -1;
+    if (!cells.surfaces->lit_medium) return;
+    for (int channel = 0; channel < 3; ++channel) {
+        const float first = s.shares.front[channel][piece.fragment], change = s.shares.back[channel][piece.fragment] - first;
+        s.piece_shares.front[channel][i] = first + piece.begin * change;
+        s.piece_shares.back[channel][i] = first + piece.end * change;
+    }
+}
+
 template <class D>
 HWY_INLINE void add_piece(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, const RayPiece& piece) {
     SurfaceTile& s = *tile.surfaces;
@@ -303,21 +322,9 @@ HWY_INLINE void add_piece(D d, const ScreenCells& cells, const Shading& shading,
         add_hit(layer_of(*cells.surfaces, piece.surface, piece.rising), piece.gradient, piece.pixel, s.hits);
         return;
     }
-    if (s.pieces.count == Fragments::capacity) composite_pieces(d, cells, shading, tile);
-    const std::size_t i = s.pieces.count++;
-    s.pieces.front[i] = piece.front;
-    s.pieces.back[i] = piece.back;
-    s.pieces.length[i] = piece.length;
-    s.pieces.pixel[i] = piece.pixel;
-    s.hit[i] = -1;
-    if (cells.surfaces->lit_medium)
-        for (int channel = 0; channel < 3; ++channel) {
-            const float first = s.shares.front[channel][piece.fragment], change = s.shares.back[channel][piece.fragment] - first;
-            s.piece_shares.front[channel][i] = first + piece.begin * change;
-            s.piece_shares.back[channel][i] = first + piece.end * change;
-        }
+    add_medium(d, cells, shading, tile, piece);
     if (piece.surface < 0) return;
-    s.hit[i] = static_cast<std::int32_t>(s.hits.count);
+    s.hit[s.pieces.count - 1] = static_cast<std::int32_t>(s.hits.count);
     add_hit(layer_of(*cells.surfaces, piece.surface, piece.rising), piece.gradient, piece.pixel, s.hits);
 }
 
@@ -425,6 +432,10 @@ HWY_NOINLINE void composite_with_surfaces(D d, const ScreenCells& cells, const S
         trail = {ends.level_back, ends.near_back, ends.item};
         if (!surfaces.medium && !tile.window) {
             if (ends.level_front != ends.level_back && add_layers(d, cells, shading, tile, i)) trail.level = PixelTrail::closed;
+            continue;
+        }
+        if (ends.level_front == ends.level_back && !tile.window) {
+            add_medium(d, cells, shading, tile, {f.front[i], f.back[i], f.length[i], pixel, i});
             continue;
         }
         // What begins at the near plane has the way from the eye as well, which belongs to the first piece.
