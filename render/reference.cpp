@@ -92,12 +92,24 @@ double outside(double value, double low, double high) {
 
 }  // namespace
 
+PixelTruth truth_of_pixel(PixelId pixel, double slack, const std::function<Light(const glm::dvec2&)>& light_at) {
+    const Light at_center = light_at(center(pixel));
+    PixelTruth truth{pixel, at_center, at_center, at_center};
+    if (!(slack > 0)) return truth;
+    for (const glm::dvec2& offset : {glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
+        const Light beside = light_at(center(pixel) + slack * offset);
+        truth.low = {glm::min(truth.low.color, beside.color), std::min(truth.low.opacity, beside.opacity)};
+        truth.high = {glm::max(truth.high.color, beside.color), std::max(truth.high.opacity, beside.opacity)};
+    }
+    return truth;
+}
+
 Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene_(std::move(scene)), index_(std::move(index)) {
     validate(scene_);
     if (!index_) index_ = std::make_shared<RayIndex>(*scene_.mesh);
-    if (!scene_.surfaces) return;
     const double diagonal = bounds(scene_.mesh->points).diagonal();
     rounding_ = rounding_along_ray(diagonal);
+    if (!scene_.surfaces) return;
     const ScalarRange values = range(scene_.field->values);
     weak_ = diagonal > 0 ? weak_gradient * (values.high - values.low) / (0.5 * diagonal) : 0.0;
     if (scene_.surfaces->shading == Shading::flat) gradients_ = cell_gradients(*scene_.mesh, *scene_.field);
@@ -151,8 +163,10 @@ ShareEnds Reference::shares(const RaySegment& segment, const ViewRay& ray) const
 
 Light Reference::light(const ViewRay& ray) const {
     const RayWindow window = ray_window(scene_, index_->middle(), ray);
-    const double window_end = window.end_of_field();
     const std::vector<RaySegment> along = ray_segments(scene_, index_->cells_along(ray));
+    const std::optional<SliceHit> slice = slice_hit(scene_, index_->middle(), ray, window, along, rounding_);
+    const bool slice_first = slice && !(window.body && window.body->t <= slice->t);
+    const double window_end = slice_first ? slice->t : window.end_of_field();
     const std::vector<SurfaceHit> hits =
         scene_.surfaces ? surface_hits(scene_.surfaces->isosurfaces, along, rounding_) : std::vector<SurfaceHit>{};
     std::vector<double> bounds;
@@ -198,7 +212,8 @@ Light Reference::light(const ViewRay& ray) const {
         }
         light.add(media, opacity, end - begin, shares_here);
     }
-    if (window.body) light.add(reflected(*window.body, ray));
+    if (slice_first) light.add(layer(*SliceColors(*scene_.slices->colors).at(slice->scalar), 1.0));
+    else if (window.body) light.add(reflected(*window.body, ray));
     return light.light();
 }
 
@@ -211,16 +226,7 @@ std::vector<PixelTruth> Reference::pixels(const Camera& camera, ImageSize size, 
     std::vector<PixelTruth> truths(pixels.size());
     const auto look = [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            PixelTruth& truth = truths[i];
-            truth.pixel = pixels[i];
-            truth.light = light(index_->ray(camera, size, center(pixels[i])));
-            truth.low = truth.high = truth.light;
-            if (!(slack > 0)) continue;
-            for (const glm::dvec2& offset : {glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
-                const Light beside = light(index_->ray(camera, size, center(pixels[i]) + slack * offset));
-                truth.low = {glm::min(truth.low.color, beside.color), std::min(truth.low.opacity, beside.opacity)};
-                truth.high = {glm::max(truth.high.color, beside.color), std::max(truth.high.opacity, beside.opacity)};
-            }
+            truths[i] = truth_of_pixel(pixels[i], slack, [&](const glm::dvec2& place) { return light(index_->ray(camera, size, place)); });
         }
     };
     oneapi::tbb::parallel_for(Range(0, pixels.size(), 64), look);

@@ -14,7 +14,7 @@
 // - Where the medium is lit, each cell sends a share of its light to the eye that is linear along the ray, between `lit_share` by
 //   the gradients where the ray enters and leaves it.
 // - Of mesh and isosurfaces counts what the clip region keeps (ray_window.hpp): rays are cut at its planes. Bodies are opaque, lit by the
-//   normals of their triangles, and stay whole.
+//   normals of their triangles, and stay whole. Slices are opaque and unlit; their scalar is that of the cell which their plane cuts there.
 // - Perspective rays begin at the eye, parallel ones at infinity. (The renderers cut at their near plane, a thousandth of the
 //   distance to the camera's center.)
 // - A ray along a face, an edge or through a vertex is decided as one beside it, the same for all cells (ray_index.hpp).
@@ -24,10 +24,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include "mesh/gradient.hpp"
@@ -53,6 +55,10 @@ struct PixelTruth {
     Light light;      // associated
     Light low, high;  // channel by channel
 };
+
+// Of a pixel by the light at places on the screen [pixels]. With `slack` > 0, low and high take in that at the four places (±slack, ±slack)
+// from its centre.
+PixelTruth truth_of_pixel(PixelId pixel, double slack, const std::function<Light(const glm::dvec2&)>& light_at);
 
 // The slack of Reference::pixels for pictures whose vertices were put on a rasterizer's grid of 1/256 of a pixel [pixels].
 constexpr double rasterizer_slack = 1.0 / 512;

@@ -21,12 +21,12 @@ struct IsoOptions {
     std::vector<std::string> surfaces;  // --iso, each VALUE[,VALUE…][:COLOR[:OPACITY]]
     std::string shading = "smooth";
     std::vector<double> light;  // X,Y,Z towards it; empty: a headlight; of bodies as well
-    bool volume = false;        // the medium around them is drawn, too
+    bool volume = false;        // the medium around them, and around slices, is drawn, too
     bool shade_volume = false;  // and lit
+    bool shading_chosen = false;  // by --shading
 
     bool any() const { return !surfaces.empty(); }
     bool any_shaded() const { return any() || shade_volume; }
-    bool shading_chosen = false;  // by --shading
 };
 
 // The words of `--iso-method`.
@@ -34,6 +34,9 @@ extern const char* const iso_method_help;
 
 // Into `options`, which must live as long as the command.
 void add_iso_options(CLI::App& command, IsoOptions& options);
+
+// A usage error (CLI::ValidationError) for --volume without isosurfaces or slices in it.
+void require_something_in_volume(const IsoOptions& options, bool slices);
 
 // Isosurfaces, and whether the volume is lit. Surfaces without a colour of their own take that of `colors` at their value. Throws Error (option) that names the option and
 // what was found.

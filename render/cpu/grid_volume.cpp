@@ -12,10 +12,13 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
+#include "render/prepared_surfaces.hpp"
 
 namespace cellproj::cpu {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr std::size_t brick_side = 4;     // cells, and bricks of the level below
 constexpr std::size_t function_bins = 1024;  // of the scalars, in which the transfer function shows something or not
@@ -137,13 +140,18 @@ void GridVolume::find_ranges(const Grid& grid) {
     }
 }
 
-void GridVolume::set_transfer(const TransferFunction& transfer) {
+void GridVolume::set_light(const TransferFunction& transfer, std::vector<float> isovalues) {
+    isovalues_ = std::move(isovalues);
     const Visibility visible(transfer);
     const auto& bricks = levels_[0].bricks;
+    const auto is_crossed = [&](const Range& range) { return range.low <= range.high && level_of(isovalues_, range.low) != level_of(isovalues_, range.high); };
+    crossed_.clear();
+    if (!isovalues_.empty())
+        std::transform(levels_[0].ranges.begin(), levels_[0].ranges.end(), std::back_inserter(crossed_), [&](const Range& range) { return is_crossed(range) ? 1 : 0; });
     empty_.assign(levels_[0].ranges.size(), 0);
     empty_cells_ = 0;
     leaps_ = false;
-    const auto is_empty = [&](const Range& range) { return range.low > range.high || !visible(range.low, range.high); };
+    const auto is_empty = [&](const Range& range) { return range.low > range.high || (!visible(range.low, range.high) && !is_crossed(range)); };
     for (std::size_t z = 0; z < bricks[2]; ++z)
         for (std::size_t y = 0; y < bricks[1]; ++y)
             for (std::size_t x = 0; x < bricks[0]; ++x) {
@@ -166,6 +174,15 @@ void GridVolume::set_transfer(const TransferFunction& transfer) {
             }
 }
 
+GridSurfaces GridVolume::surfaces() const {
+    GridSurfaces surfaces;
+    surfaces.count = static_cast<std::int32_t>(isovalues_.size());
+    surfaces.values = isovalues_.data();
+    surfaces.crossed = crossed_.data();
+    for (std::size_t a = 0; a < 3; ++a) surfaces.per_length[a] = static_cast<float>(axes_[a].per_unit * units_.length);
+    return surfaces;
+}
+
 GridCells GridVolume::cells() const {
     GridCells grid;
     std::int32_t cell_stride = 1, brick_stride = 1;
@@ -185,7 +202,8 @@ GridCells GridVolume::cells() const {
 
 // In float64: a far eye and a far origin of the coordinates cost the kernels no digits. Rays are affine over the screen:
 // in parallel views their origins, in perspective their directions, when these reach equally far along the axis of the view.
-void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int width, int height, GridRays& rays) const {
+void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int width, int height, std::span<const DepthInterval> window,
+                           GridRays& rays) const {
     const bool perspective = transform.perspective();
     const glm::dvec3 forward = transform.ray(transform.principal_point()).direction;
     const auto ray_at = [&](double px, double py) {
@@ -195,17 +213,23 @@ void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int w
     const glm::dvec3 first = ray_at(0.5, 0.5), per_column = (ray_at(width + 0.5, 0.5) - first) / double(width),
                      per_row = (ray_at(0.5, height + 0.5) - first) / double(height);
     const glm::dvec3 eye = transform.ray({x + 0.5, y + 0.5}).origin;
+    const auto columns = static_cast<std::size_t>(transform.size().width);
     for (int row = 0; row < height; ++row)
         for (int column = 0; column < width; ++column) {
             const glm::dvec3 place = first + double(column) * per_column + double(row) * per_row;
-            find_ray(perspective ? eye : place, perspective ? place : forward, perspective, static_cast<std::size_t>(tile_side * row + column), rays);
+            // Lengths along these directions are depths.
+            DepthInterval kept{perspective ? 0.0 : -infinity, infinity};
+            if (!window.empty()) {
+                const DepthInterval& pixel = window[static_cast<std::size_t>(y + row) * columns + static_cast<std::size_t>(x + column)];
+                kept = {std::max(kept.near, pixel.near * units_.length), std::min(kept.far, pixel.far * units_.length)};
+            }
+            find_ray(perspective ? eye : place, perspective ? place : forward, kept, static_cast<std::size_t>(tile_side * row + column), rays);
         }
 }
 
 // `direction` of any length.
-void GridVolume::find_ray(const glm::dvec3& origin, const glm::dvec3& direction, bool from_origin, std::size_t pixel, GridRays& rays) const {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    double enter = from_origin ? 0.0 : -infinity, leave = infinity;
+void GridVolume::find_ray(const glm::dvec3& origin, const glm::dvec3& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const {
+    double enter = kept.near, leave = kept.far;
     for (int a = 0; a < 3; ++a) {
         const Axis& axis = axes_[static_cast<std::size_t>(a)];
         const double d = direction[a], to_low = axis.low - origin[a], to_high = axis.high - origin[a];

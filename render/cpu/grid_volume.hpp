@@ -6,11 +6,13 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "classify/transfer_function.hpp"
 #include "project/camera.hpp"
 #include "render/cpu/grid_kernels.hpp"
+#include "render/depth_window.hpp"
 #include "render/grid_scene.hpp"
 
 namespace cellproj::cpu {
@@ -23,13 +25,17 @@ public:
     const GridUnits& units() const { return units_; }
     double mean_chord() const { return mean_chord_; }
 
-    // `transfer` in scene units: finds the bricks in which nothing can be seen.
-    void set_transfer(const TransferFunction& transfer);
+    // `transfer` in scene units, and isovalues as kept_isovalues has them: finds the bricks in which nothing can be seen, and those that
+    // surfaces cross.
+    void set_light(const TransferFunction& transfer, std::vector<float> isovalues);
+    // Since set_light; materials, lights and gradients are not known here. No isovalues: a count of 0.
+    GridSurfaces surfaces() const;
     std::size_t empty_cells() const { return empty_cells_; }  // in them, or blanked
 
     GridCells cells() const;
-    // The part of the pixels' rays inside the grid. Pixel (x, y) is the tile's first one.
-    void find_rays(const ScreenTransform& transform, int x, int y, int width, int height, GridRays& rays) const;
+    // The part of the pixels' rays inside the grid. Pixel (x, y) is the tile's first one. `window`: what of the picture's rays is kept, row
+    // by row [GridUnits::length]; none: all.
+    void find_rays(const ScreenTransform& transform, int x, int y, int width, int height, std::span<const DepthInterval> window, GridRays& rays) const;
 
 private:
     struct Range {
@@ -45,7 +51,7 @@ private:
     };
 
     void find_ranges(const Grid& grid);
-    void find_ray(const glm::dvec3& origin, const glm::dvec3& direction, bool from_origin, std::size_t pixel, GridRays& rays) const;
+    void find_ray(const glm::dvec3& origin, const glm::dvec3& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const;
 
     GridUnits units_;
     double mean_chord_;
@@ -54,7 +60,8 @@ private:
     std::array<std::int32_t, 3> cell_counts_, value_strides_;
     std::vector<float> values_, present_;
     std::array<Level, brick_levels> levels_;
-    std::vector<std::int32_t> empty_;
+    std::vector<float> isovalues_;
+    std::vector<std::int32_t> empty_, crossed_;  // per brick of the first level
     std::size_t empty_cells_ = 0;
     bool leaps_ = false;
 };

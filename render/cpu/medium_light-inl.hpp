@@ -81,7 +81,7 @@ HWY_NOINLINE void set_gradients(const ScreenCells& cells, const TileState& tile,
 // classify/lighting.hpp: by a gradient over the weak one.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void lit_share(D d, const ScreenSurfaces& surfaces, const Direction<V>& gradient, const Direction<V>& eye, V (&share)[3]) {
-    reflect(d, surfaces, gradient, eye, share);
+    reflect(d, surfaces.lighting, gradient, eye, share);
     const V one = hn::Set(d, 1.0F), square = hn::Min(dot(gradient, gradient), hn::Set(d, 1e30F));
     const V weight = hn::Div(square, hn::Add(one, square));
     for (V& channel : share) channel = hn::MulAdd(weight, hn::Sub(channel, one), one);

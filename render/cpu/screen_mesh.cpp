@@ -18,35 +18,6 @@ namespace {
 // Products of such coordinates stay finite in float32; no pixel lies beyond.
 double bounded(double pixels) { return std::clamp(pixels, -1e12, 1e12); }
 
-SurfaceLighting for_tiles(const Lighting& lighting) {
-    SurfaceLighting result{lighting.ambient, static_cast<float>(lighting.exponent), lighting.two_sided, {}};
-    for (const DirectionalLight& light : lighting.lights) {
-        const glm::dvec3 towards = light.towards.value_or(glm::dvec3(1));
-        const double largest = std::max({std::abs(towards.x), std::abs(towards.y), std::abs(towards.z)});  // > 0
-        result.lights.push_back({!light.towards, glm::normalize(towards / largest), light.color * light.diffuse, light.color * light.specular});
-    }
-    return result;
-}
-
-SurfaceRun run_of(const PreparedSurfaces& surfaces, bool rising) {
-    SurfaceRun run;
-    const auto append = [&](float value, const glm::dvec3& color, double opacity) {
-        run.value.push_back(value);
-        run.red.push_back(static_cast<float>(opacity * color.r));
-        run.green.push_back(static_cast<float>(opacity * color.g));
-        run.blue.push_back(static_cast<float>(opacity * color.b));
-        run.opacity.push_back(static_cast<float>(opacity));
-    };
-    const std::size_t count = surfaces.values().size();
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t surface = rising ? i : count - 1 - i;
-        const IsoSurface& material = surfaces.scene().isosurfaces.surfaces()[surface];
-        append(surfaces.values()[surface], seen_color(material, rising), material.opacity);
-    }
-    for (std::size_t i = 0; i < SurfaceRun::padding; ++i) append(0.0F, glm::dvec3(0), 0.0);
-    return run;
-}
-
 // The corners' weights at a place in the tetrahedron, by volumes; those of its middle where it has none.
 std::array<double, 4> weights_at(const std::array<EyeVertex, 4>& corners, const glm::dvec3& p) {
     const auto volume = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
@@ -96,7 +67,7 @@ void ScreenMesh::set_surfaces() {
     surfaces_.rising = run_of(*prepared, true);
     surfaces_.falling = run_of(*prepared, false);
     surfaces_.shading = scene.shading;
-    surfaces_.lighting = for_tiles(scene.lighting);
+    surfaces_.lighting = kernel_lighting(scene.lighting);
     surfaces_.medium = prepared_->has_medium();
     surfaces_.lit_medium = prepared_->lights_medium();
     levels_.assign(prepared->levels().begin(), prepared->levels().end());

@@ -16,6 +16,12 @@ namespace cellproj::cpu {
 
 using SurfaceShading = cellproj::Shading;  // cpu::Shading is that of segments
 
+// The material of a surface; its front side is that of the lower scalars.
+struct SurfaceMaterial {
+    glm::vec3 front, back;  // colours, not associated
+    float opacity;
+};
+
 // The surfaces in the order in which a ray meets them, with the side that it sees. Behind the last one stand as many that are nothing as a vector
 // has lanes.
 struct SurfaceRun {
@@ -38,6 +44,10 @@ struct SurfaceLighting {
     bool two_sided;
     std::vector<Light> lights;
 };
+
+std::vector<SurfaceMaterial> materials_of(const IsoSurfaces& surfaces);  // one for each, in their order
+SurfaceRun run_of(const PreparedSurfaces& surfaces, bool rising);
+SurfaceLighting kernel_lighting(const Lighting& lighting);
 
 struct ScreenSurfaces {
     std::span<const float> values;              // ascending isovalues, normalized (PreparedSurfaces)
