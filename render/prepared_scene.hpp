@@ -63,10 +63,11 @@ public:
     const std::vector<std::uint8_t>& visible() const { return visible_; }
     // The visible cells as they lie in memory, for pictures that need no order. Valid until the scene changes.
     ViewOrder any_order();
-    // Null for scenes that have none.
+    // Null for scenes that have none, and whose medium is not lit.
     const PreparedSurfaces* surfaces() const { return surfaces_ ? &*surfaces_ : nullptr; }
     // Whether anything but isosurfaces can be seen.
     bool has_medium() const { return facts_.medium > 0; }
+    bool lights_medium() const { return facts_.lit_medium.has_value(); }
 
     // Another transfer function over the same mesh and field: only the visibility is found anew, for most cells from bins
     // of the field's range.

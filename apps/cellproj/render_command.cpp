@@ -161,7 +161,7 @@ Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene,
     how.base.check_neighbours = false;  // the chosen one's order is proved once
     how.base.check_rays = 0;
     how.draws = [backend, &scene](const Quality& quality) {
-        return draws(backend, quality, fields_read(scene)) && (!has_surfaces(scene) || takes_surfaces(quality.method)) &&
+        return draws(backend, quality, fields_read(scene)) && (!has_surface_scene(scene) || takes_surfaces(quality.method)) &&
                !(ray_cuts(scene).any() && light_at_vertices(quality.method));  // which knows no place in a segment
     };
     const QualityChoice choice = [&] {
@@ -250,6 +250,7 @@ void render_pictures(const RenderOptions& options) {
         for (const std::string& surface : options.scene.iso.surfaces)
             text["cellproj isosurfaces"] += "--iso " + surface + " ";
         if (options.scene.iso.any()) text["cellproj isosurfaces"] += "--shading " + options.scene.iso.shading;
+        if (options.scene.iso.shade_volume) text["cellproj volume"] = "--shade-volume --shading " + options.scene.iso.shading;
         if (const std::string cuts = text_of(options.scene.cuts); !cuts.empty()) text["cellproj cuts"] = cuts;
         if (!annotator.note().empty()) text["cellproj note"] = annotator.note();
         warn(image, statistics, file);

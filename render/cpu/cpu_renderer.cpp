@@ -68,6 +68,7 @@ private:
         ViewOrder order;
         OrderReport report;
     };
+    std::span<const CellId> drawn_cells(const Plan& plan) const;
     std::optional<DepthWindow> window_of(const Frame& frame) const;
     std::optional<DepthWindow> sort_cells(const Frame& frame, const Quality& quality, SortedCells& sorted, Statistics& statistics);
     std::span<const std::uint32_t> items_of(const Frame& frame, ViewOrder& order, const std::optional<DepthWindow>& window, Statistics& statistics);
@@ -164,6 +165,11 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     return image;
 }
 
+// The cells that a picture looks at; none stands for all. Of surfaces alone, what they do not cross is not looked at.
+std::span<const CellId> CpuRenderer::drawn_cells(const Plan& plan) const {
+    return plan.drawing == Drawing::nearest_surfaces ? prepared_->surfaces()->crossed() : std::span<const CellId>();
+}
+
 std::optional<DepthWindow> CpuRenderer::window_of(const Frame& frame) const {
     if (!ray_cuts(frame.scene).any()) return {};
     return DepthWindow(frame.scene, frame.camera, frame.size, prepared_->units().length);
@@ -180,8 +186,9 @@ std::optional<DepthWindow> CpuRenderer::sort_cells(const Frame& frame, const Qua
             if (frame.plan.sorts()) sorted.order = prepared_->order(frame.camera, frame.size, method, &sorted.report);
         },
         [&] {
-            mesh_.set_view(frame.camera, frame.size);
-            bins_.find_cells(mesh_.cells(), region_at(frame.size, 0, 0));
+            const bool nearest = frame.plan.drawing == Drawing::nearest_surfaces;
+            mesh_.set_view(frame.camera, frame.size, nearest ? prepared_->surfaces()->crossed_points() : std::span<const VertexId>());
+            bins_.find_cells(mesh_.cells(), region_at(frame.size, 0, 0), drawn_cells(frame.plan));
         },
         [&] { window = window_of(frame); });
     statistics.ms.sort = watch.ms();
@@ -196,7 +203,7 @@ std::span<const std::uint32_t> CpuRenderer::items_of(const Frame& frame, ViewOrd
     if (plan.drawing == Drawing::sum) order = prepared_->any_order();
     if (plan.blends() && !plan.sorts()) order.items = mesh_.nearly_sorted(prepared_->any_order().items);
     // In any order; nearly sorted ones hide most of each other.
-    if (plan.drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(prepared_->surfaces()->crossed());
+    if (plan.drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(drawn_cells(plan));
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
     const std::size_t pixels = static_cast<std::size_t>(frame.size.width) * static_cast<std::size_t>(frame.size.height);
@@ -213,7 +220,7 @@ void CpuRenderer::draw_regions(Image& image, const Plan& plan, std::span<const s
     for (int y = 0; y < size.height; y += first.height)
         for (int x = 0; x < size.width; x += first.width) {
             const Region region = region_at(size, x, y);
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, plan.blends() && may_be_opaque());
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, plan.blends() && may_be_opaque(), drawn_cells(plan));
             draw(image, region, plan.drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }

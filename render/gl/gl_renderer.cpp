@@ -141,7 +141,7 @@ void GlRenderer::prepare_surfaces(const Scene& scene, const Quality& quality) {
         prepared_->set_surfaces(scene.surfaces, sides);
         surfaces_.reset();
     }
-    if (!has_surfaces(scene) || (surfaces_ && surfaces_->method() == quality.surfaces)) return;
+    if (!has_surface_scene(scene) || (surfaces_ && surfaces_->method() == quality.surfaces)) return;
     surfaces_.reset();  // none behind a failure
     surfaces_ = std::make_unique<SurfacePass>(*prepared_, quality.surfaces);
 }
