@@ -88,6 +88,8 @@ TEST_F(GridCommand, IsosurfacesAreThoseOfTheGrid) {
     const Outcome explained = run(std::string(voxels) + " --iso 20,30 --explain");
     for (const char* words : {"exact roots", "of all points", "nothing is seen between the isosurfaces"})
         EXPECT_NE(explained.text.find(words), std::string::npos) << explained.text;
+    const Outcome slabs = run(std::string(voxels) + " --iso 20 --sampling view:30 --shading unlit --explain");
+    for (const char* words : {"by slabs", "unlit"}) EXPECT_NE(slabs.text.find(words), std::string::npos) << slabs.text;
     EXPECT_EQ(drawn_as(std::string(voxels) + " --iso 20 --as tets"), "tetrahedra");
 }
 
@@ -98,7 +100,7 @@ TEST_F(GridCommand, OpenGlDrawsCellsAndSlabs) {
     std::filesystem::remove(folder_ / "p.png");
     expect_refused(std::string(voxels) + " --sampling object:8 --backend cpu", {"--sampling", "--backend gl"});
     expect_refused(std::string(voxels) + " --sampling object:8 --as tets", {"--sampling", "tetrahedra"});
-    expect_refused(std::string(voxels) + " --sampling object:8 --iso 20", {"--iso"});
+    expect_refused(std::string(voxels) + " --sampling object:8:post --iso 20", {"--sampling", "object:8:post"});
     expect_refused(std::string(voxels) + " --sampling objects:8", {"--sampling", "did you mean \"object\""});
     expect_refused(std::string(voxels) + " --as grid --backend gl --method exact", {"--method", "exact"});
 }

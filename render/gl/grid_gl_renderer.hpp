@@ -8,6 +8,7 @@
 
 #include "project/camera.hpp"
 #include "render/gl/context.hpp"
+#include "render/gl/grid_surface_pass.hpp"
 #include "render/gl/grid_view.hpp"
 #include "render/gl/grid_volume.hpp"
 #include "render/gl/objects.hpp"
@@ -50,6 +51,8 @@ private:
     // Of quality_, for the prepared scene.
     std::unique_ptr<SegmentShader> shader_;
     Texture classified_;  // where points are classified
+    std::optional<GridSurfacePass> surfaces_;  // of scene_
+    bool medium_ = true;                       // whether there is light between them
 };
 
 }  // namespace cellproj::gl

@@ -133,18 +133,21 @@ double slab_thickness(const Grid& grid, const GridUnits& units, const GridSampli
     return extent / units.length / sampling.slabs;
 }
 
-std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const SegmentShader& shader,
-                       const Texture& classified, Programs& programs, const std::string& defines, TriangleStream& stream) {
-    using Light = GridSampling::Light;
-    const bool pre = sampling.light == Light::pre;
+std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const SlabLight& light, Programs& programs,
+                       const std::string& defines, TriangleStream& stream) {
+    const bool pre = light.classified != nullptr;
     const std::string own = "#define SLABS " + std::to_string(sampling.per_polygon) + '\n' + (pre ? "#define PRE\n" : "") +
-                            (sampling.light == Light::post ? "#define POST\n" : "");
+                            (sampling.light == GridSampling::Light::post ? "#define POST\n" : "") + (light.shader ? "#define MEDIUM\n" : "") +
+                            (light.surfaces ? light.surfaces->defines() : std::string());
     const Program& program =
-        programs.of(shaders::grid_slab_vert + (pre ? shaders::no_cell_glsl : shader.vertex_source()),
-                     shaders::grid_rays_frag + shaders::grid_slab_frag + shaders::light_glsl + (pre ? std::string() : shader.source()),
-                     view.defines() + defines + own);
+        programs.of(shaders::grid_slab_vert + (light.shader ? light.shader->vertex_source() : shaders::no_cell_glsl),
+                    shaders::grid_rays_frag + shaders::grid_slab_frag + (light.surfaces ? shaders::reflected_glsl : std::string()) +
+                        (pre || light.shader ? shaders::light_glsl : std::string()) + (light.shader ? light.shader->source() : std::string()),
+                    view.defines() + defines + own);
     view.set_rays(program);
-    pre ? classified.bind(classified_unit) : shader.bind(program);
+    if (pre) light.classified->bind(classified_unit);
+    if (light.shader) light.shader->bind(program);
+    if (light.surfaces) light.surfaces->bind(program, *light.gradients);
 
     Bounds box;
     glm::dvec3 scale, offset;

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
+#include "render/grid_surfaces.hpp"
 
 namespace cellproj::gl {
 
@@ -69,6 +70,17 @@ Texture GridVolume::classified(const Grid& grid, const TransferFunction& transfe
         texels[4 * i + 3] = static_cast<float>(transfer.extinction(s));
     });
     return Texture::volume({n.ni, n.nj, n.nk}, texels);
+}
+
+const Texture& GridVolume::gradients(const Grid& grid) {
+    if (gradients_) return *gradients_;
+    const std::vector<glm::vec3> kept = kept_gradients(grid, units_);
+    std::vector<float> texels(4 * kept.size());
+    for_all(kept.size(), 65536, [&](std::size_t i) {
+        for (int axis = 0; axis < 3; ++axis) texels[4 * i + static_cast<std::size_t>(axis)] = kept[i][axis];
+    });
+    const GridDimensions n = grid.dimensions();
+    return gradients_.emplace(Texture::volume({n.ni, n.nj, n.nk}, texels));
 }
 
 void GridVolume::set_transfer(const Grid& grid, const TransferFunction& transfer) {

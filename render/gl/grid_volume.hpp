@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -30,6 +31,9 @@ public:
     // Emission and extinction at the points, for slabs that interpolate them; of a function in scene units.
     Texture classified(const Grid& grid, const TransferFunction& transfer) const;
 
+    // The gradients at the points (render/grid_surfaces.hpp), made when they are first asked for.
+    const Texture& gradients(const Grid& grid);
+
     // Another function over the same grid.
     void set_transfer(const Grid& grid, const TransferFunction& transfer);
 
@@ -37,6 +41,7 @@ private:
     GridUnits units_;
     double mean_chord_, longest_chord_;
     Texture values_;
+    std::optional<Texture> gradients_;
     std::vector<std::uint8_t> drawn_;
 };
 

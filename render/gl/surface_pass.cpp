@@ -1,55 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/gl/surface_pass.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include "mesh/error.hpp"
+#include "render/gl/surface_lists.hpp"
 
 namespace cellproj::gl {
 
 namespace {
 
 // Behind those of the methods (segment_shader.hpp).
-constexpr unsigned int surfaces_unit = 8, lights_unit = 9, layers_unit = 11, first_unit = 12;
-
-void append(std::vector<float>& texels, const glm::dvec3& v, double last) {
-    for (int axis = 0; axis < 3; ++axis) texels.push_back(static_cast<float>(v[axis]));
-    texels.push_back(static_cast<float>(last));
-}
-
-Texture upload(const PreparedSurfaces& surfaces) {
-    std::vector<float> texels;
-    for (std::size_t i = 0; i < surfaces.values().size(); ++i) {
-        const IsoSurface& surface = surfaces.scene().isosurfaces.surfaces()[i];
-        append(texels, {surfaces.thresholds()[i], surfaces.values()[i], surface.opacity}, 0.0);
-        append(texels, seen_color(surface, true), 0.0);
-        append(texels, seen_color(surface, false), 0.0);
-    }
-    return Texture::list(texels);
-}
-
-// Directions of any finite length > 0.
-glm::dvec3 unit(const glm::dvec3& v) {
-    const glm::dvec3 size = glm::abs(v);
-    return glm::normalize(v / std::max({size.x, size.y, size.z}));
-}
-
-Texture upload(const std::vector<DirectionalLight>& lights) {
-    std::vector<float> texels;
-    for (const DirectionalLight& light : lights) {
-        append(texels, light.towards ? unit(*light.towards) : glm::dvec3(0.0), light.diffuse);
-        append(texels, light.color, light.specular);
-    }
-    if (texels.empty()) texels.resize(4);  // a list holds something
-    return Texture::list(texels);
-}
+constexpr unsigned int surfaces_unit = 8, layers_unit = 11, first_unit = 12;
 
 }  // namespace
 
@@ -65,7 +30,8 @@ SurfaceSides SurfacePass::sides_for(const SurfaceMethod& method) {
 }
 
 SurfacePass::SurfacePass(const PreparedScene& prepared, const SurfaceMethod& method)
-    : prepared_(prepared), method_(method), list_(upload(*prepared.surfaces())), lights_(upload(scene().lighting.lights)) {
+    : prepared_(prepared), method_(method), list_(surface_list(scene().isosurfaces, prepared.surfaces()->thresholds(), prepared.surfaces()->values())),
+      lights_(light_list(scene().lighting)) {
     assert(prepared.surfaces()->sides() == sides_for(method));
     if (method.kind != SurfaceMethodKind::exact) upload_tables();
 }
@@ -128,10 +94,7 @@ void SurfacePass::bind(const Program& program, const CellStream& cells, const Ne
     }
     if (!lit) return;
 
-    const Lighting& lighting = scene().lighting;
-    set("two_sided", lighting.two_sided ? 1.0 : 0.0);
-    set("light_count", static_cast<double>(lighting.lights.size()));
-    program.set("ambient", glm::vec4(lighting.ambient, lighting.exponent));
+    set_lighting(program, scene().lighting);
     // The rows of the rotation, seen through what it makes of the axes.
     const glm::dvec3 x = transform.to_eye({1, 0, 0}), y = transform.to_eye({0, 1, 0}), z = transform.to_eye({0, 0, 1});
     if (perspective) {

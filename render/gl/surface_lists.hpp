@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Isosurfaces and lights as fragments read them, in meshes (surface_pass.hpp) and in grids (grid_slabs.hpp).
+#pragma once
+
+#include <span>
+
+#include "render/gl/objects.hpp"
+#include "render/gl/textures.hpp"
+#include "render/surface_scene.hpp"
+
+namespace cellproj::gl {
+
+// Units behind those of the methods (segment_shader.hpp).
+inline constexpr unsigned int lights_unit = 9;
+
+// Three texels each: threshold, isovalue, opacity; front colour; back colour.
+Texture surface_list(const IsoSurfaces& surfaces, std::span<const float> thresholds, std::span<const float> values);
+
+// For a program with shaders/reflected.glsl: the lights to be bound to `lights_unit`, and what else it asks.
+Texture light_list(const Lighting& lighting);
+void set_lighting(const Program& program, const Lighting& lighting);
+
+}  // namespace cellproj::gl
