@@ -71,7 +71,7 @@ TEST_F(GridCommand, AGridIsDrawnAsItIs) {
 }
 
 TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
-    for (const char* option : {"--iso 20 --iso-method table", "--iso 20 --backend gl", "--order mpvo", "--cell-values averaged", "--verify-order", "--max-error 0.1", "--clip 1,1,1:0,0,1",
+    for (const char* option : {"--iso 20 --iso-method table", "--order mpvo", "--cell-values averaged", "--verify-order", "--max-error 0.1", "--clip 1,1,1:0,0,1",
                                "--clip-box 0,0,0,2,2,2"}) {
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "tetrahedra") << option;
         std::filesystem::remove(folder_ / "p.png");
@@ -83,7 +83,7 @@ TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
 }
 
 TEST_F(GridCommand, IsosurfacesAreThoseOfTheGrid) {
-    for (const char* option : {"--iso 20", "--iso 15,25 --shading flat --light 1,0,0", "--iso 20:red:0.5 --volume --as grid"})
+    for (const char* option : {"--iso 20", "--iso 20 --backend gl", "--iso 15,25 --shading flat --light 1,0,0", "--iso 20:red:0.5 --volume --as grid"})
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "grid") << option;
     const Outcome explained = run(std::string(voxels) + " --iso 20,30 --explain");
     for (const char* words : {"exact roots", "of all points", "nothing is seen between the isosurfaces"})

@@ -335,7 +335,7 @@ TEST(CpuGridSurfaces, WhatTheyCannotBeIsRefused) {
     EXPECT_NO_THROW(cpu().render(scene, camera, small));
 }
 
-// ---- Slabs, by OpenGL ----
+// ---- Cells and slabs, by OpenGL ----
 
 GridRenderer& gl() {
     static const auto shared = make_grid_renderer(Backend::gl_osmesa);
@@ -354,7 +354,7 @@ TEST(GlGridSurfaces, ALinearFieldIsExact) {
             const GridScene scene = scene_of(unit_cube(8, testing_support::linear), medium, surfaces_of(glass(0.31, 0.5, 0.75), shading, two_lights()));
             for (const Projection projection : projections) {
                 const Camera camera = view_of_unit_cube(projection);
-                for (const char* sampling : {"object:8", "view:31:x2"}) {
+                for (const char* sampling : {"cells", "object:8", "view:31:x2"}) {
                     const Image image = gl().render(scene, camera, few, slabs(sampling));
                     EXPECT_LT(error_of(image, scene, camera, 1e-4, 0.01), 1e-4) << sampling;
                 }
@@ -371,7 +371,7 @@ TEST(GlGridSurfaces, NoCrossingIsShownTwiceOrLost) {
     for (const Projection projection : projections) {
         for (const glm::dvec3& from : {glm::dvec3(0, 0, 1), glm::dvec3(-1, 0, 0), glm::dvec3(1.3, -2.1, 0.9)}) {
             const Camera camera = frame_bounds({glm::dvec3(0), glm::dvec3(1)}, projection, from, {0.1, 0.9, 0.2}, 1.0);
-            for (const char* sampling : {"object:3", "object:16", "object:15:x4", "view:4", "view:40", "view:41:x3", "view:333:x16"}) {
+            for (const char* sampling : {"cells", "object:3", "object:16", "object:15:x4", "view:4", "view:40", "view:41:x3", "view:333:x16"}) {
                 const Image image = gl().render(scene, camera, {61, 53}, slabs(sampling));
                 int seen = 0;
                 for (const glm::vec4& pixel : image.pixels) {
@@ -382,6 +382,29 @@ TEST(GlGridSurfaces, NoCrossingIsShownTwiceOrLost) {
                 EXPECT_GT(seen, 50) << sampling;
             }
         }
+    }
+}
+
+// The roots of cells are exact: three planes that cross each other, and noise with isovalues at many points, on even and uneven axes, beside
+// blanked cells.
+TEST(GlGridSurfaces, CellsHaveEveryRoot) {
+    const GridScene harmonic = harmonic_scene(0);
+    for (const Projection projection : projections) {
+        const Camera camera = view_of_harmonic(harmonic, projection);
+        EXPECT_LT(error_of(gl().render(harmonic, camera, small, slabs("cells")), harmonic, camera, 1e-5), 1e-5);
+    }
+    std::mt19937_64 random(504);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int trial = 0; trial < 6; ++trial) {
+        const GridAxis even = uniform_axis(0, 0.25, 5);
+        const auto value = [&](const glm::dvec3&) { return trial < 3 ? unit(random) : 0.25 * static_cast<double>(random() % 5); };
+        Grid grid = trial % 2 == 0 ? grid_of({even, even, even}, value) : grid_of({uneven_axis(random, 5), uneven_axis(random, 6), uneven_axis(random, 4)}, value);
+        grid.blanked.assign(grid.cell_count(), 0);
+        grid.blanked[5] = grid.blanked[17] = grid.blanked[33] = 1;
+        const Shading shading = std::array{Shading::flat, Shading::smooth, Shading::unlit}[static_cast<std::size_t>(trial % 3)];
+        const GridScene scene = scene_of(grid, no_medium, surfaces_of(trial < 3 ? glass(0.3, 0.5, 0.8) : glass(0.25, 0.6, 0.75), shading, two_lights()));
+        const Camera camera = frame_bounds(grid.bounds(), projections[static_cast<std::size_t>(trial % 2)], {unit(random), -unit(random), unit(random)}, {0.1, 0.2, 1}, 1.2);
+        EXPECT_LT(error_of(gl().render(scene, camera, few, slabs("cells")), scene, camera, tolerance, 0.01), tolerance) << trial;
     }
 }
 
@@ -433,6 +456,8 @@ TEST(GlGridSurfaces, SeeEveryChangeOfTheScene) {
     same();
     scene.grid = std::make_shared<const Grid>(unit_cube(7, testing_support::linear));
     same();
+    scene.surfaces = surfaces_of(glass(0.2, 0.5, 0.7));
+    same("cells");
     scene.surfaces = nullptr;
     same("cells");
 }
@@ -441,7 +466,7 @@ TEST(GlGridSurfaces, WhatSlabsCannotShowIsRefused) {
     const Camera camera = view_of_unit_cube(Projection::parallel);
     const GridScene scene = scene_of(unit_cube(3, scenes::waves), ramp(), surfaces_of({{.value = 0.5}}));
     EXPECT_NO_THROW(gl().render(scene, camera, small, slabs("object:4")));
-    for (const char* sampling : {"cells", "object:4:pre", "view:4:post"}) EXPECT_THROW(gl().render(scene, camera, small, slabs(sampling)), Error) << sampling;
+    for (const char* sampling : {"object:4:pre", "view:4:post"}) EXPECT_THROW(gl().render(scene, camera, small, slabs(sampling)), Error) << sampling;
     EXPECT_THROW(gl().render(scene, camera, small, slabs("object:4", "linear:8:half")), Error);
 }
 

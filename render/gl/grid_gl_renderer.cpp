@@ -4,6 +4,7 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,9 +46,6 @@ void require_grid_drawn(const GridQuality& quality, bool surfaces) {
     const auto refuse = [](const char* option, const char* expected, const std::string& found, const char* advice) {
         throw Error({ErrorKind::option, option, expected, found, advice});
     };
-    if (surfaces && quality.sampling.cut == GridSampling::Cut::cells)
-        refuse("--iso", "no isosurfaces in cells of a regular grid by OpenGL", "some",
-               "use slabs (--sampling view:256), the CPU backend (--backend cpu), or draw the grid as tetrahedra (--as tets)");
     if (surfaces && quality.sampling.light != GridSampling::Light::segment)
         refuse("--sampling", "slabs by their two slices for isosurfaces", to_string(quality.sampling), "leave out pre or post");
     if (surfaces && !takes_surfaces(quality.method))
@@ -90,14 +88,14 @@ void GlGridRenderer::prepare_here(const GridScene& scene, const GridQuality& qua
         volume_.reset();  // none of another scene behind a failure
         shader_.reset();
         volume_.emplace(scene);
-    } else if (!same_transfer) {
-        volume_->set_transfer(*scene.grid, *scene.transfer);
     }
     if (!same_surfaces) {
         surfaces_.reset();
         scene_.surfaces.reset();
         if (has_surfaces(scene)) surfaces_.emplace(scene, volume_->units());
     }
+    if (!same_surfaces || !same_transfer)
+        volume_->set_light(*scene.grid, *scene.transfer, surfaces_ ? std::span(surfaces_->thresholds()) : std::span<const float>());
     scene_ = scene;
     const bool same_light = quality_.method == quality.method && quality_.sampling == quality.sampling;
     if (!same_transfer || !shader_ || !same_light) prepare_light(quality, same_grid);
@@ -168,9 +166,16 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     return image;
 }
 
+GridLight GlGridRenderer::light() {
+    if (!surfaces_) return {.shader = shader_.get()};
+    return {.shader = medium_ ? shader_.get() : nullptr,
+            .surfaces = &*surfaces_,
+            .gradients = surfaces_->smooth() ? &volume_->gradients(*scene_.grid) : nullptr};
+}
+
 void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, Statistics& statistics) {
     const std::string blending = blending_define(quality_.method);
-    GridFootprints footprints(view, *shader_, programs_, blending, indices_);
+    GridFootprints footprints(view, light(), programs_, blending, indices_);
     std::optional<GridTemplates> templates;
     if (light_at_vertices(quality_.method))
         templates.emplace(view, volume_->units(), *shader_, programs_, blending, footprints, indices_, pairs_);
@@ -194,14 +199,11 @@ void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, Stat
 
 void GlGridRenderer::draw_slabs(const GridView& view, Statistics& statistics) {
     const Stopwatch drawing;
-    const bool pre = quality_.sampling.light == GridSampling::Light::pre, medium = medium_ || !surfaces_;
-    const Texture none;
-    const SlabLight light{.shader = medium && !pre ? shader_.get() : nullptr,
-                          .classified = pre ? &classified_ : nullptr,
-                          .surfaces = surfaces_ ? &*surfaces_ : nullptr,
-                          .gradients = surfaces_ && surfaces_->smooth() ? &volume_->gradients(*scene_.grid) : &none};
-    statistics.counts.triangles =
-        gl::draw_slabs(view, volume_->units(), quality_.sampling, light, programs_, blending_define(quality_.method), slabs_);
+    const bool pre = quality_.sampling.light == GridSampling::Light::pre;
+    GridLight light = this->light();
+    if (pre) light.shader = nullptr;
+    statistics.counts.triangles = gl::draw_slabs(view, volume_->units(), quality_.sampling, light, pre ? &classified_ : nullptr, programs_,
+                                                 blending_define(quality_.method), slabs_);
     statistics.counts.drawn = scene_.grid->cell_count();
     glFinish();
     statistics.ms.draw = drawing.ms();

@@ -38,6 +38,7 @@ private:
         double mean, longest;  // of segments [scene units]
     };
     Lengths segment_lengths(const GridSampling& sampling) const;
+    GridLight light();
     void draw_cells(const GridView& view, const Camera& camera, Statistics& statistics);
     void draw_slabs(const GridView& view, Statistics& statistics);
 

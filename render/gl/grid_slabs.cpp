@@ -133,21 +133,16 @@ double slab_thickness(const Grid& grid, const GridUnits& units, const GridSampli
     return extent / units.length / sampling.slabs;
 }
 
-std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const SlabLight& light, Programs& programs,
-                       const std::string& defines, TriangleStream& stream) {
-    const bool pre = light.classified != nullptr;
-    const std::string own = "#define SLABS " + std::to_string(sampling.per_polygon) + '\n' + (pre ? "#define PRE\n" : "") +
-                            (sampling.light == GridSampling::Light::post ? "#define POST\n" : "") + (light.shader ? "#define MEDIUM\n" : "") +
-                            (light.surfaces ? light.surfaces->defines() : std::string());
-    const Program& program =
-        programs.of(shaders::grid_slab_vert + (light.shader ? light.shader->vertex_source() : shaders::no_cell_glsl),
-                    shaders::grid_rays_frag + shaders::grid_slab_frag + (light.surfaces ? shaders::reflected_glsl : std::string()) +
-                        (pre || light.shader ? shaders::light_glsl : std::string()) + (light.shader ? light.shader->source() : std::string()),
-                    view.defines() + defines + own);
+std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const GridLight& light, const Texture* classified,
+                       Programs& programs, const std::string& defines, TriangleStream& stream) {
+    const std::string own = "#define SLABS " + std::to_string(sampling.per_polygon) + '\n' + (classified ? "#define PRE\n" : "") +
+                            (sampling.light == GridSampling::Light::post ? "#define POST\n" : "");
+    const Program& program = programs.of(shaders::grid_slab_vert + light.vertex_source(),
+                                         shaders::grid_rays_frag + light.fragment_source(shaders::grid_slab_frag + (classified ? shaders::light_glsl : "")),
+                                         view.defines() + defines + light.defines() + own);
     view.set_rays(program);
-    if (pre) light.classified->bind(classified_unit);
-    if (light.shader) light.shader->bind(program);
-    if (light.surfaces) light.surfaces->bind(program, *light.gradients);
+    light.bind(program);
+    if (classified) classified->bind(classified_unit);
 
     Bounds box;
     glm::dvec3 scale, offset;

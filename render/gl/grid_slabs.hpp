@@ -31,16 +31,8 @@ double slab_thickness(const Grid& grid, const GridUnits& units, const GridSampli
 // The axis that the view is closest to.
 std::size_t nearest_axis(const GridView& view);
 
-// What slabs show.
-struct SlabLight {
-    const SegmentShader* shader = nullptr;    // null: no medium, or `classified`
-    const Texture* classified = nullptr;      // GridSampling::Light::pre: at the points
-    const GridSurfacePass* surfaces = nullptr;  // null: none
-    const Texture* gradients = nullptr;       // for surfaces that are smooth
-};
-
-// Draws all. Returns the number of triangles.
-std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const SlabLight& light, Programs& programs,
-                       const std::string& defines, TriangleStream& stream);
+// Draws all. Returns the number of triangles. `classified`: GridSampling::Light::pre, at the points; else null.
+std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const GridLight& light, const Texture* classified,
+                       Programs& programs, const std::string& defines, TriangleStream& stream);
 
 }  // namespace cellproj::gl

@@ -12,6 +12,7 @@ extern const std::string cell_frag;         // needs light_glsl and a light_of_s
 extern const std::string surfaces_vert;     // needs a prepare_cell behind it
 extern const std::string surfaces_frag;     // needs reflected_glsl behind it; with a medium: what cell_frag needs
 extern const std::string reflected_glsl;
+extern const std::string grid_surfaces_glsl;  // with surfaces, between grid_rays_frag and what follows; needs reflected_glsl behind it
 extern const std::string light_glsl;
 extern const std::string grid_place_vert;   // needs grid_cell_vert or grid_lit_vert behind it
 extern const std::string grid_cell_vert;    // behind grid_place_vert; needs a prepare_cell behind it
@@ -19,7 +20,7 @@ extern const std::string grid_lit_vert;     // behind grid_place_vert; needs lig
 extern const std::string grid_lit_frag;
 extern const std::string grid_rays_frag;    // needs grid_cell_frag or grid_slab_frag behind it
 extern const std::string grid_slab_vert;
-extern const std::string grid_slab_frag;    // as grid_cell_frag; with surfaces that are lit: reflected_glsl
+extern const std::string grid_slab_frag;    // as grid_cell_frag
 extern const std::string grid_cell_frag;    // behind grid_rays_frag; needs light_glsl and a light_of_segment behind it
 extern const std::string no_cell_glsl;      // a prepare_cell that does nothing
 extern const std::string sampled_glsl;   // behind it: average, homogeneous, linear or stein

@@ -11,8 +11,8 @@
 
 namespace cellproj::gl {
 
-// Units behind those of the methods (segment_shader.hpp).
-inline constexpr unsigned int lights_unit = 9;
+// Behind the units of the methods (segment_shader.hpp) and of those who draw surfaces.
+inline constexpr unsigned int lights_unit = 13;
 
 // Three texels each: threshold, isovalue, opacity; front colour; back colour.
 Texture surface_list(const IsoSurfaces& surfaces, std::span<const float> thresholds, std::span<const float> values);

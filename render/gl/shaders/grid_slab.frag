@@ -2,21 +2,12 @@
 // The segments of a ray in some slabs of a grid, from front to back: EKE01 section 4.2. Each is cut by the box of the grid, so that the first
 // and the last are as long as they are. Slices that two slabs share are looked up once. Behind
 // grid_rays.frag; light.glsl and the method's file are behind this one.
-//   SURFACES  a slab is cut where isosurfaces cross it (EKE01 section 5.2), told by the levels of its slices: a scalar that is the isovalue is
-//             on one side of it, so that two slabs never show the same crossing (the paper's double hit) and none falls between them
-//   MEDIUM    and there is light between them
-//   LIT       surfaces are shaded by the gradient of the trilinear scalar or
-//   SMOOTH    by that of the points, trilinear in between
+//   SURFACES  a slab is cut where isosurfaces cross it (grid_surfaces.glsl)
 flat in vec2 v_slabs;
 
 layout(binding = 8) uniform sampler3D values;  // scalars 0..1 at points, interpolated between them
 #ifdef PRE
 layout(binding = 10) uniform sampler3D classified;  // emission, extinction at points
-#endif
-#ifdef SURFACES
-layout(binding = 11) uniform samplerBuffer surfaces;   // three each: threshold, isovalue, opacity; front colour; back colour
-layout(binding = 12) uniform sampler3D gradients;      // at points
-uniform float surface_count;
 #endif
 uniform vec3 box_low, box_high;                 // about the view's reference point, scene units
 uniform vec3 point_scale, point_offset;         // from there to texture coordinates
@@ -51,20 +42,7 @@ vec4 light_of_slab(vec3 front, vec3 back, float s_front, float s_back, float seg
 #endif
 
 #ifdef SURFACES
-// How many surfaces a scalar is not below.
-int rank(float s) {
-    int from = 0, to = int(surface_count);
-    while (from < to) {
-        int middle = (from + to) / 2;
-        if (s < texelFetch(surfaces, 3 * middle).x) to = middle;
-        else from = middle + 1;
-    }
-    return from;
-}
-
 #ifdef LIT
-vec3 reflected(vec3 gradient, vec3 to_eye);  // reflected.glsl
-
 vec3 gradient_at(vec3 place) {
     vec3 at = place * point_scale + point_offset;
 #ifdef SMOOTH
@@ -90,7 +68,7 @@ vec4 light_of_cut_slab(vec3 front, vec3 back, float s_front, float s_back, float
     float at = 0.0, s_at = s_front;  // the last crossing
     for (;;) {
         bool crossed = k != end;
-        int surface = 3 * max(rising ? k : k - 1, 0);
+        int surface = surface_behind(k, rising);
         vec4 about = texelFetch(surfaces, surface);
         float share = crossed && s_front != s_back ? clamp((about.y - s_front) / (s_back - s_front), at, 1.0) : 1.0;
 #ifdef MEDIUM
@@ -99,7 +77,7 @@ vec4 light_of_cut_slab(vec3 front, vec3 back, float s_front, float s_back, float
         s_at = s_here;
 #endif
         if (!crossed) break;
-        vec3 color = texelFetch(surfaces, surface + (rising ? 1 : 2)).rgb;
+        vec3 color = seen_color(surface, rising);
 #ifdef LIT
         color *= reflected(gradient_at(mix(front, back, share)), to_eye);
 #endif

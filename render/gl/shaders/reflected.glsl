@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 uniform vec4 ambient;                              // and the exponent
 uniform float two_sided, light_count;
-layout(binding = 9) uniform samplerBuffer lights;  // two each: direction to it, of length 1 (0: to the eye), diffuse; colour, specular
+layout(binding = 13) uniform samplerBuffer lights;  // two each: direction to it, of length 1 (0: to the eye), diffuse; colour, specular
 
 // classify/lighting.hpp: what of its colour a surface reflects. `to_eye` has length 1.
 vec3 reflected(vec3 gradient, vec3 to_eye) {
