@@ -107,8 +107,8 @@ PixelTruth truth_of_pixel(PixelId pixel, double slack, const std::function<Light
 Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene_(std::move(scene)), index_(std::move(index)) {
     validate(scene_);
     if (!index_) index_ = std::make_shared<RayIndex>(*scene_.mesh);
-    if (!scene_.surfaces) return;
     rounding_ = rounding_along_ray(bounds(scene_.mesh->points).diagonal());
+    if (!scene_.surfaces) return;
     if (scene_.surfaces->shading == Shading::flat) gradients_ = cell_gradients(*scene_.mesh, *scene_.field);
     if (scene_.surfaces->shading == Shading::smooth) gradients_ = vertex_gradients(*scene_.mesh, *scene_.field);
 }
@@ -146,8 +146,10 @@ Light Reference::reflected(const BodyHit& hit, const ViewRay& ray) const {
 
 Light Reference::light(const ViewRay& ray) const {
     const RayWindow window = ray_window(scene_, index_->middle(), ray);
-    const double window_end = window.end_of_field();
     const std::vector<RaySegment> along = ray_segments(scene_, index_->cells_along(ray));
+    const std::optional<SliceHit> slice = slice_hit(scene_, index_->middle(), ray, window, along, rounding_);
+    const bool slice_first = slice && !(window.body && window.body->t <= slice->t);
+    const double window_end = slice_first ? slice->t : window.end_of_field();
     const std::vector<SurfaceHit> hits =
         scene_.surfaces ? surface_hits(scene_.surfaces->isosurfaces, along, rounding_) : std::vector<SurfaceHit>{};
     std::vector<double> bounds;
@@ -185,7 +187,8 @@ Light Reference::light(const ViewRay& ray) const {
         }
         light.add(media, opacity, end - begin);
     }
-    if (window.body) light.add(reflected(*window.body, ray));
+    if (slice_first) light.add(layer(*SliceColors(*scene_.slices->colors).at(slice->scalar), 1.0));
+    else if (window.body) light.add(reflected(*window.body, ray));
     return light.light();
 }
 

@@ -12,7 +12,7 @@
 // - Isosurfaces lie where the linear scalar of a cell passes their value (ray_surfaces.hpp): the medium is integrated up to
 //   them, then they are composited, unlit or lit by the cell's or the points' gradients.
 // - Of mesh and isosurfaces counts what the clip region keeps (ray_window.hpp): rays are cut at its planes. Bodies are opaque, lit by the
-//   normals of their triangles, and stay whole.
+//   normals of their triangles, and stay whole. Slices are opaque and unlit; their scalar is that of the cell which their plane cuts there.
 // - Perspective rays begin at the eye, parallel ones at infinity. (The renderers cut at their near plane, a thousandth of the
 //   distance to the camera's center.)
 // - A ray along a face, an edge or through a vertex is decided as one beside it, the same for all cells (ray_index.hpp).

@@ -27,6 +27,8 @@ void validate(const TetMesh& mesh, const ScalarField& field) {
 
 bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
 
+RayCuts ray_cuts(const Scene& scene) { return count_cuts(scene.clip.get(), scene.bodies.get(), scene.slices.get()); }
+
 void validate(const Scene& scene) {
     assert(scene.mesh && scene.field && scene.transfer);
     const ScalarField& field = *scene.field;
@@ -34,6 +36,8 @@ void validate(const Scene& scene) {
     if (scene.opacity_field) validate(*scene.mesh, *scene.opacity_field);
     if (scene.clip) validate(*scene.clip, "clip region");
     if (scene.bodies) validate(*scene.bodies);
+    assert(!scene.slices || scene.slices->cuts.size() == scene.slices->slices.size());
+    if (scene.slices) validate(*scene.slices);
     if (!has_surfaces(scene)) return;
     if (field.location == FieldLocation::cells) {
         throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",

@@ -21,14 +21,14 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
     if (options.tetrahedralize) refuse("--tetrahedralize", "a file that holds a regular grid", "a surface");
     if (!options.opacity_field.empty()) refuse("--opacity-field", "colour and opacity from one field for a regular grid", "another field");
     if (options.cell_values == "averaged") refuse("--cell-values", "constant for a regular grid", "averaged");
-    if (const std::string cuts = text_of(options.cuts); !cuts.empty())
-        throw Error({ErrorKind::option, cuts, "no clipping planes and no bodies for a regular grid", "some", "leave them out, or draw the grid as tetrahedra (--as tets)"});
     if (options.iso.any() && wishes.quality.surfaces.kind != SurfaceMethodKind::exact)
         refuse("--iso-method", "exact for isosurfaces of a regular grid", "a table");
     if (wishes.named_order) refuse("--order", "auto for a regular grid, whose cells need no sorting", "another order");
     if (wishes.quality.check_rays > 0) refuse("--verify-order", "a mesh, whose cells are sorted", "a regular grid");
     if (wishes.measured_method) refuse("--max-error", "--method for a regular grid, such as exact:1e-3", "--max-error");
-    require_grid_drawn(wishes.backend, {wishes.quality.method, wishes.quality.target, wishes.sampling}, options.iso.any());
+    const GridQuality quality{wishes.quality.method, wishes.quality.target, wishes.sampling};
+    require_grid_drawn(wishes.backend, quality, options.iso.any());
+    require_grid_cut(quality, planned_cuts(options.cuts));
 }
 
 }  // namespace

@@ -54,13 +54,16 @@ void add_iso_options(CLI::App& command, IsoOptions& options) {
                                               color_forms + "; default: that of the transfer function at the value. OPACITY: 0..1, default 1")
                            ->allow_extra_args(false);
     command.add_flag("--volume", options.volume,
-                     "Draw the volume around the isosurfaces, too; so do --transfer, --opacity-scale and --opacity-field")
-        ->needs(iso);
+                     "Draw the volume around isosurfaces and slices, too; so do --transfer, --opacity-scale and --opacity-field");
     command.add_option("--shading", options.shading,
                        "Isosurfaces: smooth (by the gradients of the points), flat (of the cells), or unlit: their colour as it is")
         ->check(CLI::IsMember({"flat", "smooth", "unlit"}))->capture_default_str()->needs(iso);
     command.add_option("--light", options.light, "Isosurfaces and bodies: towards a distant light, X,Y,Z; default: a headlight")
         ->expected(3)->delimiter(',');
+}
+
+void require_something_in_volume(const IsoOptions& options, bool slices) {
+    if (options.volume && !options.any() && !slices) throw CLI::ValidationError("--volume", "without --iso and --slice it is drawn anyway");
 }
 
 SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& colors) {

@@ -21,7 +21,7 @@ struct IsoOptions {
     std::vector<std::string> surfaces;  // --iso, each VALUE[,VALUE…][:COLOR[:OPACITY]]
     std::string shading = "smooth";
     std::vector<double> light;  // X,Y,Z towards it; empty: a headlight; of bodies as well
-    bool volume = false;        // the medium around them is drawn, too
+    bool volume = false;        // the medium around them, and around slices, is drawn, too
 
     bool any() const { return !surfaces.empty(); }
 };
@@ -31,6 +31,9 @@ extern const char* const iso_method_help;
 
 // Into `options`, which must live as long as the command.
 void add_iso_options(CLI::App& command, IsoOptions& options);
+
+// A usage error (CLI::ValidationError) for --volume without isosurfaces or slices in it.
+void require_something_in_volume(const IsoOptions& options, bool slices);
 
 // Surfaces without a colour of their own take that of `colors` at their value. Throws Error (option) that names the option and
 // what was found.

@@ -14,7 +14,6 @@
 #include "grid_options.hpp"
 #include "mesh/error.hpp"
 #include "progress.hpp"
-#include "render/depth_window.hpp"
 #include "render/output_file.hpp"
 #include "render/plan.hpp"
 #include "render/renderer.hpp"
@@ -162,7 +161,7 @@ Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene,
     how.base.check_rays = 0;  // the chosen one's order is proved once
     how.draws = [backend, &scene](const Quality& quality) {
         return draws(backend, quality, fields_read(scene)) && (!has_surfaces(scene) || takes_surfaces(quality.method)) &&
-               !(DepthWindow::is_needed(scene) && light_at_vertices(quality.method));  // which knows no place in a segment
+               !(ray_cuts(scene).any() && light_at_vertices(quality.method));  // which knows no place in a segment
     };
     const QualityChoice choice = [&] {
         const Progress progress("choosing a method");
@@ -309,7 +308,10 @@ void add_render_command(CLI::App& app) {
                       "Prove the order of every picture: relations of neighbours, and the sequence of cells along 4096 pixels' rays");
     command->add_flag("--explain", options->explain, "Say what was chosen for the picture and why: backend, cells, order, method and more");
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
-    command->callback([options] { render_pictures(*options); });
+    command->callback([options] {
+        require_something_in_volume(options->scene.iso, !options->scene.cuts.slices.empty());
+        render_pictures(*options);
+    });
 }
 
 }  // namespace cellproj::cli

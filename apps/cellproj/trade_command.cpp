@@ -215,6 +215,7 @@ void add_trade_command(CLI::App& app) {
     command->add_option("--csv", options->csv, "Write the table as CSV");
     command->add_option("--json", options->json, "Write the table as JSON");
     command->callback([options] {
+        require_something_in_volume(options->scene.iso, false);
         options->wish = parse_backend(options->backend);
         if (depends_on_gpu(options->wish)) options->gpu = find_gpu();
         run_trade(*options);

@@ -118,11 +118,11 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     Statistics statistics;
     const Stopwatch total;
     prepare_here(scene, quality);
-    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, DepthWindow::is_needed(scene), rules_);
+    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, ray_cuts(scene), rules_);
     Image image(size.width, size.height);
     statistics.ms.plan = total.ms();
     if (plan.drawing == Drawing::nothing) {
-        if (DepthWindow::is_needed(scene)) DepthWindow(scene, camera, size, prepared_->units().length).add_bodies(image);
+        if (ray_cuts(scene).any()) DepthWindow(scene, camera, size, prepared_->units().length).add_opaque(image);
         statistics.ms.total = total.ms();
         describe(statistics, quality, plan);
         if (out) *out = std::move(statistics);
@@ -152,7 +152,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
             bins_.find_cells(mesh_.cells(), first);
         },
         [&] {
-            if (DepthWindow::is_needed(scene)) window.emplace(scene, camera, size, prepared_->units().length);
+            if (ray_cuts(scene).any()) window.emplace(scene, camera, size, prepared_->units().length);
         });
     statistics.ms.sort = sort.ms();
 
@@ -175,7 +175,7 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
             draw(image, region, drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }
-    if (window) window->add_bodies(image);
+    if (window) window->add_opaque(image);
     statistics.ms.total = total.ms();
 
     std::vector<CellId> parts;

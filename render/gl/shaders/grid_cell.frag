@@ -6,6 +6,21 @@
 flat in vec3 v_low, v_high, v_inverse_edges;
 flat in vec4 v_bottom, v_top;
 
+#ifdef WINDOW
+layout(binding = 10) uniform samplerBuffer windows;  // of the pixels: what is kept of their rays, by the ray's parameter
+uniform float window_width;                          // pixels in a row
+#endif
+
+// What is kept of a part of the ray.
+vec2 kept_of(vec2 part) {
+#ifdef WINDOW
+    vec2 window = texelFetch(windows, int(gl_FragCoord.x) + int(window_width) * int(gl_FragCoord.y)).xy;
+    return vec2(max(part.x, window.x), min(part.y, window.y));
+#else
+    return part;
+#endif
+}
+
 layout(location = 0) out vec4 light;  // associated colour, opacity
 
 #define scalars float
@@ -123,7 +138,7 @@ vec4 light_of_cut_cell(Ray ray, vec2 inside, float s_front, float s_back) {
 void main() {
     Ray ray = ray_of_pixel();
     Crossings crossings = crossings_of(ray, v_low, v_high);
-    vec2 inside = part_between(crossings);
+    vec2 inside = kept_of(part_between(crossings));
     if (!(inside.x < inside.y)) discard;
     vec3 nearer = min(crossings.low, crossings.high), farther = max(crossings.low, crossings.high);
     bvec3 up = lessThan(crossings.low, crossings.high);
@@ -134,7 +149,7 @@ void main() {
 #else
 void main() {
     Ray ray = ray_of_pixel();
-    vec2 inside = part_between(ray, v_low, v_high);
+    vec2 inside = kept_of(part_between(ray, v_low, v_high));
     if (!(inside.x < inside.y)) discard;
     float s_front = scalar_at(ray.origin + inside.x * ray.direction), s_back = scalar_at(ray.origin + inside.y * ray.direction);
     light = light_of_segment(s_front, s_back, (inside.y - inside.x) * ray.stretch);
