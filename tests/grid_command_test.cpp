@@ -71,7 +71,7 @@ TEST_F(GridCommand, AGridIsDrawnAsItIs) {
 }
 
 TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
-    for (const char* option : {"--iso 20 --iso-method table", "--iso 20 --backend gl", "--order mpvo", "--cell-values averaged", "--verify-order", "--max-error 0.1"}) {
+    for (const char* option : {"--iso 20 --iso-method table", "--order mpvo", "--cell-values averaged", "--verify-order", "--max-error 0.1"}) {
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "tetrahedra") << option;
         std::filesystem::remove(folder_ / "p.png");
         expect_refused(std::string(voxels) + " --as grid " + option, {"regular grid", "--as tets"});
@@ -90,11 +90,13 @@ TEST_F(GridCommand, RaysThroughAGridAreCutInIt) {
 }
 
 TEST_F(GridCommand, IsosurfacesAreThoseOfTheGrid) {
-    for (const char* option : {"--iso 20", "--iso 15,25 --shading flat --light 1,0,0", "--iso 20:red:0.5 --volume --as grid"})
+    for (const char* option : {"--iso 20", "--iso 20 --backend gl", "--iso 15,25 --shading flat --light 1,0,0", "--iso 20:red:0.5 --volume --as grid"})
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "grid") << option;
     const Outcome explained = run(std::string(voxels) + " --iso 20,30 --explain");
     for (const char* words : {"exact roots", "of all points", "nothing is seen between the isosurfaces"})
         EXPECT_NE(explained.text.find(words), std::string::npos) << explained.text;
+    const Outcome slabs = run(std::string(voxels) + " --iso 20 --sampling view:30 --shading unlit --explain");
+    for (const char* words : {"by slabs", "unlit"}) EXPECT_NE(slabs.text.find(words), std::string::npos) << slabs.text;
     EXPECT_EQ(drawn_as(std::string(voxels) + " --iso 20 --as tets"), "tetrahedra");
 }
 
@@ -105,7 +107,7 @@ TEST_F(GridCommand, OpenGlDrawsCellsAndSlabs) {
     std::filesystem::remove(folder_ / "p.png");
     expect_refused(std::string(voxels) + " --sampling object:8 --backend cpu", {"--sampling", "--backend gl"});
     expect_refused(std::string(voxels) + " --sampling object:8 --as tets", {"--sampling", "tetrahedra"});
-    expect_refused(std::string(voxels) + " --sampling object:8 --iso 20", {"--iso"});
+    expect_refused(std::string(voxels) + " --sampling object:8:post --iso 20", {"--sampling", "object:8:post"});
     expect_refused(std::string(voxels) + " --sampling objects:8", {"--sampling", "did you mean \"object\""});
     expect_refused(std::string(voxels) + " --as grid --backend gl --method exact", {"--method", "exact"});
 }

@@ -156,7 +156,7 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.drawn_as = "grid";
     statistics.order = "none";  // rays meet their cells one after the other
     statistics.order_exact = true;
-    statistics.plan = plan_of(scene, quality, {Backend::cpu, statistics.counts.cells, statistics.counts.drawn, surfaces_.medium});
+    statistics.plan = plan_of(scene, quality, {.rays = true, .cells = statistics.counts.cells, .drawn = statistics.counts.drawn, .medium = surfaces_.medium});
     *out = std::move(statistics);
     return image;
 }
