@@ -194,7 +194,8 @@ protected:
     HWY_INLINE V between(V low, V high, V share) const { return hn::MulAdd(hn::Sub(high, low), share, low); }
     HWY_INLINE V in_unit(V x) const { return hn::Min(hn::Max(x, hn::Zero(d_)), hn::Set(d_, 1.0F)); }
 
-    // The bilinear scalar on the face where the ray leaves; where it is cut in the cell, the trilinear one there. `bounded`: never beyond those of the face's corners.
+    // The bilinear scalar on the face where the ray leaves; where it is cut in the cell, the trilinear one there. `bounded`: never beyond those
+    // of the corners of the face.
     template <bool bounded>
     HWY_INLINE V scalar_at_face(const Ahead& ahead) const {
         const M by_x = ahead.by_x, by_y = ahead.by_y;
