@@ -49,10 +49,10 @@ const char* const iso_method_help =
     "combined:N, likewise, part before and part behind the cell's medium: both approximate, for comparison (gl; render/README.md)";
 
 void add_iso_options(CLI::App& command, IsoOptions& options) {
-    CLI::Option* iso = command.add_option("--iso", options.surfaces,
-                                          std::string("Draw isosurfaces of --field: VALUE[,VALUE...][:COLOR[:OPACITY]] (again for more). COLOR: ") +
-                                              color_forms + "; default: that of the transfer function at the value. OPACITY: 0..1, default 1")
-                           ->allow_extra_args(false);
+    command.add_option("--iso", options.surfaces,
+                       std::string("Draw isosurfaces of --field: VALUE[,VALUE...][:COLOR[:OPACITY]] (again for more). COLOR: ") +
+                           color_forms + "; default: that of the transfer function at the value. OPACITY: 0..1, default 1")
+        ->allow_extra_args(false);
     command.add_flag("--volume", options.volume,
                      "Draw the volume around isosurfaces and slices, too; so do --transfer, --opacity-scale and --opacity-field");
     command.add_flag("--shade-volume", options.shade_volume,
