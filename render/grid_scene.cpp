@@ -20,6 +20,8 @@ void validate(const GridScene& scene) {
     validate(grid, "grid");
     if (!grid.blanked.empty() && std::find(grid.blanked.begin(), grid.blanked.end(), 0) == grid.blanked.end())
         throw Error({ErrorKind::data, "grid", "a cell that is not blanked", "none", "leave cells to draw"});
+    if (scene.surfaces && scene.surfaces->lit_medium)
+        throw Error({ErrorKind::option, "light by the gradient", "tetrahedra", "a regular grid", "draw it as tetrahedra (--as tets)"});
     if (scene.clip) validate(*scene.clip, "clip region");
     if (scene.bodies) validate(*scene.bodies);
     if (scene.slices) validate(*scene.slices);

@@ -111,16 +111,17 @@ Decision decide_field(const SceneFacts& facts) {
 }
 
 Decision decide_gradients(const SceneFacts& facts) {
-    if (!facts.surfaces) return {"gradients", "none", "nothing is lit"};
-    switch (facts.surfaces->shading) {
+    if (!facts.surfaces && !facts.lit_medium) return {"gradients", "none", "nothing is lit"};
+    const std::string of_medium = facts.lit_medium ? "; the medium is lit by them" : "";
+    switch (facts.lit_medium ? *facts.lit_medium : facts.surfaces->shading) {
         case Shading::unlit:
             return {"gradients", "none", "isosurfaces are unlit"};
         case Shading::flat:
-            return {"gradients", "one for a cell", "flat shading needs none at points"};
+            return {"gradients", "one for a cell", "flat shading needs none at points" + of_medium};
         case Shading::smooth:
             break;
     }
-    return {"gradients", "at points", "smooth shading interpolates them"};
+    return {"gradients", "at points", "smooth shading interpolates them" + of_medium};
 }
 
 }  // namespace

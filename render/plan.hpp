@@ -41,6 +41,7 @@ struct SceneFacts {
         Shading shading = Shading::unlit;
     };
     std::optional<Surfaces> surfaces = {};
+    std::optional<Shading> lit_medium = {};  // how, where a medium is seen and lit: flat or smooth
 
     // Whether any picture shows anything.
     bool seen() const { return medium > 0 || (surfaces && surfaces->crossed > 0); }

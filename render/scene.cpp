@@ -27,6 +27,8 @@ void validate(const TetMesh& mesh, const ScalarField& field) {
 
 bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
 
+bool has_lit_medium(const Scene& scene) { return scene.surfaces && scene.surfaces->lit_medium && scene.surfaces->shading != Shading::unlit; }
+
 RayCuts ray_cuts(const Scene& scene) { return count_cuts(scene.clip.get(), scene.bodies.get(), scene.slices.get()); }
 
 void validate(const Scene& scene) {
@@ -38,9 +40,9 @@ void validate(const Scene& scene) {
     if (scene.bodies) validate(*scene.bodies);
     assert(!scene.slices || scene.slices->cuts.size() == scene.slices->slices.size());
     if (scene.slices) validate(*scene.slices);
-    if (!has_surfaces(scene)) return;
+    if (!has_surface_scene(scene)) return;
     if (field.location == FieldLocation::cells) {
-        throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",
+        throw Error({ErrorKind::option, (has_surfaces(scene) ? "isosurfaces of field \"" : "light by the gradient of field \"") + field.name + "\"", "a field on points",
                      "one on cells, constant in each", "carry it to the points first (--cell-values averaged)"});
     }
     validate(scene.surfaces->lighting, "lights");

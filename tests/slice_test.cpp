@@ -15,7 +15,7 @@
 #include <glm/geometric.hpp>
 
 #include "apps/scenes/measured_scenes.hpp"
-#include "render/annotation_color_bar.hpp"
+#include "render/annotation/color_bar.hpp"
 #include "render/grid_renderer.hpp"
 #include "render/plan.hpp"
 #include "render/reference.hpp"

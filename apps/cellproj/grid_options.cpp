@@ -21,6 +21,7 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
     if (options.tetrahedralize) refuse("--tetrahedralize", "a file that holds a regular grid", "a surface");
     if (!options.opacity_field.empty()) refuse("--opacity-field", "colour and opacity from one field for a regular grid", "another field");
     if (options.cell_values == "averaged") refuse("--cell-values", "constant for a regular grid", "averaged");
+    if (options.iso.shade_volume) refuse("--shade-volume", "a regular grid's volume as it is, not lit", "--shade-volume");
     if (options.iso.any() && wishes.quality.surfaces.kind != SurfaceMethodKind::exact)
         refuse("--iso-method", "exact for isosurfaces of a regular grid", "a table");
     if (wishes.named_order) refuse("--order", "auto for a regular grid, whose cells need no sorting", "another order");

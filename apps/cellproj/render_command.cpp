@@ -110,7 +110,7 @@ void warn(const Image& image, const Statistics& statistics, const std::filesyste
 void print_proof(const Statistics& s) {
     if (!s.order_check) return;
     std::printf("order %s%s: %zu face relations violated; %zu of %zu rays meet cells in another order (%zu pairs)\n", s.order.c_str(),
-                s.order_exact ? ", exact" : "", s.counts.order_violations, s.order_check->wrong_rays, s.order_check->rays,
+                s.order_exact ? ", exact" : "", s.counts.order_violations.value_or(0), s.order_check->wrong_rays, s.order_check->rays,
                 s.order_check->wrong_pairs);
 }
 
@@ -158,9 +158,10 @@ void print_choice(const QualityChoice& choice, double max_error, const ChoiceOpt
 Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene, const std::vector<Camera>& cameras, ImageSize size,
                         double max_error, const Quality& base, double& measured) {
     ChoiceOptions how{.base = base};
-    how.base.check_rays = 0;  // the chosen one's order is proved once
+    how.base.check_neighbours = false;  // the chosen one's order is proved once
+    how.base.check_rays = 0;
     how.draws = [backend, &scene](const Quality& quality) {
-        return draws(backend, quality, fields_read(scene)) && (!has_surfaces(scene) || takes_surfaces(quality.method)) &&
+        return draws(backend, quality, fields_read(scene)) && (!has_surface_scene(scene) || takes_surfaces(quality.method)) &&
                !(ray_cuts(scene).any() && light_at_vertices(quality.method));  // which knows no place in a segment
     };
     const QualityChoice choice = [&] {
@@ -188,6 +189,7 @@ void render_pictures(const RenderOptions& options) {
                     .order = order_method(options.order),  // nothing: auto, pixel
                     .order_per_pixel = options.order == "pixel",
                     .surfaces = parse_surface_method(options.iso_method, "--iso-method"),
+                    .check_neighbours = options.verify_order || !options.stats.empty(),
                     .check_rays = options.verify_order ? rays_of_proof : 0};
     const FieldsRead fields = options.scene.fields();
     const GridSampling sampling = parse_grid_sampling(options.sampling, "--sampling");
@@ -248,6 +250,7 @@ void render_pictures(const RenderOptions& options) {
         for (const std::string& surface : options.scene.iso.surfaces)
             text["cellproj isosurfaces"] += "--iso " + surface + " ";
         if (options.scene.iso.any()) text["cellproj isosurfaces"] += "--shading " + options.scene.iso.shading;
+        if (options.scene.iso.shade_volume) text["cellproj volume"] = "--shade-volume --shading " + options.scene.iso.shading;
         if (const std::string cuts = text_of(options.scene.cuts); !cuts.empty()) text["cellproj cuts"] = cuts;
         if (!annotator.note().empty()) text["cellproj note"] = annotator.note();
         warn(image, statistics, file);

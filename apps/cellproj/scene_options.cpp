@@ -127,7 +127,7 @@ void add_surfaces(const SceneOptions& options, Scene& scene) {
 
 // Isosurfaces and slices alone are what is asked for unless something tells of the volume around them.
 bool draws_volume(const SceneOptions& options) {
-    return (!options.iso.any() && options.cuts.slices.empty()) || options.iso.volume || options.opacity_chosen;
+    return (!options.iso.any() && options.cuts.slices.empty()) || options.iso.volume || options.iso.shade_volume || options.opacity_chosen;
 }
 
 // Cell fields are exact as constants; averaged to the points they look smooth.
@@ -161,8 +161,7 @@ ImageSize require_possible(const SceneOptions& options) {
     if (options.cuts.caps && options.cuts.planes.empty() && options.cuts.box.empty())
         throw Error({ErrorKind::option, "--caps", "a clip region to be closed", "none", "give --clip or --clip-box"});
     for (const std::string& surface : options.cuts.surfaces) parse_body(surface);
-    if (!options.iso.light.empty() && !options.iso.any() && options.cuts.surfaces.empty())
-        throw Error({ErrorKind::option, "--light", "isosurfaces or bodies to be lit", "none", "give --iso or --surface"});
+    require_shaded(options.iso, !options.cuts.surfaces.empty());
     return parse_size(options.size);
 }
 
@@ -181,7 +180,7 @@ LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as) {
                 .field = field,
                 .transfer = choose_transfer(options, input, regular.get(), *field, opacity.get()),
                 .opacity_field = opacity};
-    if (options.iso.any()) add_surfaces(options, scene);
+    if (options.iso.any_shaded()) add_surfaces(options, scene);
     add_cuts(options.cuts, parse_lighting(options.iso), scene.transfer, regular.get(), scene);
     if (!draws_volume(options))
         scene.transfer = std::make_shared<const TransferFunction>(OpticalModel::density, std::vector<ColorNode>{{0, glm::dvec3(0)}}, std::vector<ExtinctionNode>{{0, 0}});

@@ -75,9 +75,10 @@ Backend backend_for(const TradeCommandOptions& options, const Quality& quality) 
 
 // Those that can draw the scene.
 std::vector<Quality> possible_qualities(const TradeCommandOptions& options) {
-    std::vector<Quality> qualities = options.scene.iso.any() ? surface_qualities() : trade_qualities();
+    std::vector<Quality> qualities = options.scene.iso.any_shaded() ? surface_qualities() : trade_qualities();
     std::erase_if(qualities, [&](const Quality& quality) {
-        return !draws(backend_for(options, quality), quality, options.scene.fields());
+        return !draws(backend_for(options, quality), quality, options.scene.fields()) ||
+               (!options.scene.iso.any() && quality.surfaces.kind != SurfaceMethodKind::exact);
     });
     return qualities;
 }

@@ -141,7 +141,7 @@ void GlRenderer::prepare_surfaces(const Scene& scene, const Quality& quality) {
         prepared_->set_surfaces(scene.surfaces, sides);
         surfaces_.reset();
     }
-    if (!has_surfaces(scene) || (surfaces_ && surfaces_->method() == quality.surfaces)) return;
+    if (!has_surface_scene(scene) || (surfaces_ && surfaces_->method() == quality.surfaces)) return;
     surfaces_.reset();  // none behind a failure
     surfaces_ = std::make_unique<SurfacePass>(*prepared_, quality.surfaces);
 }
@@ -200,7 +200,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     describe(statistics, quality, plan);
     if (out) {  // the proof of the order is no part of the frame
         if (plan.sorts()) {
-            prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
+            prepared_->judge(order, order_report, camera, size, quality, statistics);
             tell_order(statistics.plan, statistics.order, statistics.order_exact);
         }
         *out = std::move(statistics);

@@ -31,9 +31,10 @@ Texture surface_list(const IsoSurfaces& surfaces, std::span<const float> thresho
     for (std::size_t i = 0; i < values.size(); ++i) {
         const IsoSurface& surface = surfaces.surfaces()[i];
         append(texels, {thresholds[i], values[i], surface.opacity}, 0.0);
-        append(texels, seen_color(surface, true), 0.0);
-        append(texels, seen_color(surface, false), 0.0);
+        append(texels, surface.opacity * seen_color(surface, true), surface.opacity);
+        append(texels, surface.opacity * seen_color(surface, false), surface.opacity);
     }
+    if (texels.empty()) texels.resize(12);  // a medium that is lit, alone: read by what is not drawn
     return Texture::list(texels);
 }
 
@@ -47,9 +48,17 @@ Texture light_list(const Lighting& lighting) {
     return Texture::list(texels);
 }
 
+bool has_one_headlight(const Lighting& lighting) { return lighting.lights.size() == 1 && !lighting.lights.front().towards; }
+
 void set_lighting(const Program& program, const Lighting& lighting) {
     program.set("two_sided", lighting.two_sided ? 1.0F : 0.0F);
-    program.set("light_count", static_cast<float>(lighting.lights.size()));
+    if (has_one_headlight(lighting)) {
+        const DirectionalLight& light = lighting.lights.front();
+        program.set("headlight_diffuse", glm::vec4(light.diffuse * light.color, 0.0));
+        program.set("headlight_specular", glm::vec4(light.specular * light.color, 0.0));
+    } else {
+        program.set("light_count", static_cast<float>(lighting.lights.size()));
+    }
     program.set("ambient", glm::vec4(lighting.ambient, lighting.exponent));
 }
 

@@ -14,8 +14,11 @@ namespace cellproj::gl {
 // Behind the units of the methods (segment_shader.hpp) and of those who draw surfaces.
 inline constexpr unsigned int lights_unit = 13;
 
-// Three texels each: threshold, isovalue, opacity; front colour; back colour.
+// Three texels each: threshold, isovalue, opacity; front and back as layers, of associated colour and opacity.
 Texture surface_list(const IsoSurfaces& surfaces, std::span<const float> thresholds, std::span<const float> values);
+
+// As most scenes have: nothing to be read, and no middle between two directions. Then shaders/reflected.glsl wants HEADLIGHT.
+bool has_one_headlight(const Lighting& lighting);
 
 // For a program with shaders/reflected.glsl: the lights to be bound to `lights_unit`, and what else it asks.
 Texture light_list(const Lighting& lighting);

@@ -19,9 +19,9 @@ constexpr unsigned int surfaces_unit = 8, layers_unit = 11, first_unit = 12;
 }  // namespace
 
 void SurfacePass::require_drawn(const Scene& scene, const Quality& quality) {
-    if (!has_surfaces(scene)) return;
+    if (!has_surface_scene(scene)) return;
     if (!takes_surfaces(quality.method))
-        throw Error({ErrorKind::option, "--method", "one of light per pixel, blended once, for a scene with isosurfaces",
+        throw Error({ErrorKind::option, "--method", "one of light per pixel, blended once, for a scene with isosurfaces or a lit medium",
                      to_string(quality.method), "use integral, exact or a table"});
 }
 
@@ -61,7 +61,7 @@ std::string SurfacePass::defines(bool perspective, bool nearest) const {
     const Shading shading = scene().shading;
     return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (medium ? "#define MEDIUM\n" : "") +
            (medium && two_fields ? "#define TWO_FIELDS\n" : "") + (shading != Shading::unlit ? "#define LIT\n" : "") +
-           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
+           (has_one_headlight(scene().lighting) ? "#define HEADLIGHT\n" : "") + (prepared_.lights_medium() ? "#define LIT_MEDIUM\n" : "") + (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
            (method_.kind != SurfaceMethodKind::exact ? "#define TABLE\n" : "") +
            (method_.kind == SurfaceMethodKind::combined ? "#define COMBINED\n" : "");
 }

@@ -118,11 +118,11 @@ vec4 light_of_cut_cell(Ray ray, vec2 inside, float s_front, float s_back) {
 #ifdef MEDIUM
             sum += (1.0 - sum.a) * light_of_segment(s_at, about.y, (x - at) * segment);
 #endif
-            vec3 color = seen_color(surface, rising);
+            vec4 layer = seen_layer(surface, rising);
 #ifdef LIT
-            color *= reflected(gradient_in_cell(place_in_cell(ray, inside.x + x * (inside.y - inside.x))), -ray.direction / ray.stretch);
+            layer.rgb *= reflected(gradient_in_cell(place_in_cell(ray, inside.x + x * (inside.y - inside.x))), -ray.direction / ray.stretch);
 #endif
-            sum += (1.0 - sum.a) * about.z * vec4(color, 1.0);
+            sum += (1.0 - sum.a) * layer;
             at = x;
             s_at = about.y;
             k += rising ? 1 : -1;

@@ -77,11 +77,11 @@ vec4 light_of_cut_slab(vec3 front, vec3 back, float s_front, float s_back, float
         s_at = s_here;
 #endif
         if (!crossed) break;
-        vec3 color = seen_color(surface, rising);
+        vec4 layer = seen_layer(surface, rising);
 #ifdef LIT
-        color *= reflected(gradient_at(mix(front, back, share)), to_eye);
+        layer.rgb *= reflected(gradient_at(mix(front, back, share)), to_eye);
 #endif
-        sum += (1.0 - sum.a) * about.z * vec4(color, 1.0);
+        sum += (1.0 - sum.a) * layer;
         at = share;
         k += rising ? 1 : -1;
     }
