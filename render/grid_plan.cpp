@@ -25,6 +25,7 @@ Decision order(const GridQuality& quality, const GridFacts& facts) {
 
 Decision segments(const GridScene& scene, const GridQuality& quality, const GridFacts& facts) {
     const std::string method = to_string(quality.method);
+    if (facts.drawn == 0) return {"segments", "none", "no cell shows anything"};
     if (!facts.medium && has_surfaces(scene)) return {"segments", "none", "nothing is seen between the isosurfaces"};
     if (quality.sampling.cut != GridSampling::Cut::cells) return {"segments", method, "one in each slab, linear between its slices"};
     if (quality.method.kind == MethodKind::exact) return {"segments", method, "the cubic of the trilinear scalar, in as many lines as the error takes"};

@@ -82,7 +82,7 @@ TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
 }
 
 TEST_F(GridCommand, RaysThroughAGridAreCutInIt) {
-    for (const char* option : {"--clip 1,1,1:0,0,1", "--clip-box 0,0,0,2,2,2 --caps", "--surface demo:sphere", "--slice 1,1,1:1,1,1 --volume"})
+    for (const char* option : {"--clip 1,1,1:0,0,1", "--clip-box 0,0,0,2,2,2", "--clip 1,1,1:0,0,-1 --caps", "--surface demo:sphere", "--slice 1,1,1:1,1,1 --volume"})
         for (const char* backend : {" --backend cpu", " --backend gl"}) EXPECT_EQ(drawn_as(std::string(voxels) + " " + option + backend), "grid") << option;
     EXPECT_EQ(drawn_as(std::string(voxels) + " --clip 1,1,1:0,0,1 --verify-order"), "tetrahedra");
     std::filesystem::remove(folder_ / "p.png");

@@ -31,8 +31,7 @@ std::string GridLight::defines() const {
     std::string defines = shader ? "#define MEDIUM\n" : "";
     if (!surfaces) return defines;
     defines += "#define SURFACES\n";
-    if (surfaces->scene_->shading != Shading::unlit) defines += "#define LIT\n";
-    if (has_one_headlight(surfaces->scene_->lighting)) defines += "#define HEADLIGHT\n";
+    if (surfaces->scene_->shading != Shading::unlit) defines += "#define LIT\n" + lighting_defines(surfaces->scene_->lighting);
     if (surfaces->smooth()) defines += "#define SMOOTH\n";
     return defines;
 }
@@ -50,7 +49,7 @@ void GridLight::bind(const Program& program) const {
     surfaces->list_.bind(surfaces_unit);
     program.set("surface_count", static_cast<float>(surfaces->thresholds_.size()));
     if (surfaces->scene_->shading == Shading::unlit) return;
-    if (!has_one_headlight(surfaces->scene_->lighting)) surfaces->lights_.bind(lights_unit);
+    surfaces->lights_.bind(lights_unit);
     set_lighting(program, surfaces->scene_->lighting);
     if (surfaces->smooth()) gradients->bind(gradients_unit);
 }

@@ -24,6 +24,9 @@ glm::dvec3 unit(const glm::dvec3& v) {
     return glm::normalize(v / std::max({size.x, size.y, size.z}));
 }
 
+// As most scenes have.
+bool has_one_headlight(const Lighting& lighting) { return lighting.lights.size() == 1 && !lighting.lights.front().towards; }
+
 }  // namespace
 
 Texture surface_list(const IsoSurfaces& surfaces, std::span<const float> thresholds, std::span<const float> values) {
@@ -38,6 +41,8 @@ Texture surface_list(const IsoSurfaces& surfaces, std::span<const float> thresho
     return Texture::list(texels);
 }
 
+std::string lighting_defines(const Lighting& lighting) { return has_one_headlight(lighting) ? "#define HEADLIGHT\n" : ""; }
+
 Texture light_list(const Lighting& lighting) {
     std::vector<float> texels;
     for (const DirectionalLight& light : lighting.lights) {
@@ -47,8 +52,6 @@ Texture light_list(const Lighting& lighting) {
     if (texels.empty()) texels.resize(4);  // a list holds something
     return Texture::list(texels);
 }
-
-bool has_one_headlight(const Lighting& lighting) { return lighting.lights.size() == 1 && !lighting.lights.front().towards; }
 
 void set_lighting(const Program& program, const Lighting& lighting) {
     program.set("two_sided", lighting.two_sided ? 1.0F : 0.0F);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "render/gl/objects.hpp"
 #include "render/gl/textures.hpp"
@@ -14,13 +15,11 @@ namespace cellproj::gl {
 // Behind the units of the methods (segment_shader.hpp) and of those who draw surfaces.
 inline constexpr unsigned int lights_unit = 13;
 
-// Three texels each: threshold, isovalue, opacity; front and back as layers, of associated colour and opacity.
+// Three texels each: threshold, isovalue, opacity; front; back: associated colour, opacity.
 Texture surface_list(const IsoSurfaces& surfaces, std::span<const float> thresholds, std::span<const float> values);
 
-// As most scenes have: nothing to be read, and no middle between two directions. Then shaders/reflected.glsl wants HEADLIGHT.
-bool has_one_headlight(const Lighting& lighting);
-
-// For a program with shaders/reflected.glsl: the lights to be bound to `lights_unit`, and what else it asks.
+// For a program with shaders/reflected.glsl: its variant, the lights to be bound to `lights_unit`, and what else it asks.
+std::string lighting_defines(const Lighting& lighting);
 Texture light_list(const Lighting& lighting);
 void set_lighting(const Program& program, const Lighting& lighting);
 

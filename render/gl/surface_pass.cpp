@@ -61,7 +61,8 @@ std::string SurfacePass::defines(bool perspective, bool nearest) const {
     const Shading shading = scene().shading;
     return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (medium ? "#define MEDIUM\n" : "") +
            (medium && two_fields ? "#define TWO_FIELDS\n" : "") + (shading != Shading::unlit ? "#define LIT\n" : "") +
-           (has_one_headlight(scene().lighting) ? "#define HEADLIGHT\n" : "") + (prepared_.lights_medium() ? "#define LIT_MEDIUM\n" : "") + (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
+           lighting_defines(scene().lighting) + (prepared_.lights_medium() ? "#define LIT_MEDIUM\n" : "") +
+           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
            (method_.kind != SurfaceMethodKind::exact ? "#define TABLE\n" : "") +
            (method_.kind == SurfaceMethodKind::combined ? "#define COMBINED\n" : "");
 }

@@ -118,7 +118,7 @@ vec4 light_of_cut_cell(Ray ray, vec2 inside, float s_front, float s_back) {
 #ifdef MEDIUM
             sum += (1.0 - sum.a) * light_of_segment(s_at, about.y, (x - at) * segment);
 #endif
-            vec4 layer = seen_layer(surface, rising);
+            vec4 layer = layer_of(surface, rising);
 #ifdef LIT
             layer.rgb *= reflected(gradient_in_cell(place_in_cell(ray, inside.x + x * (inside.y - inside.x))), -ray.direction / ray.stretch);
 #endif

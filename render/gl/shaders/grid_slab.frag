@@ -77,7 +77,7 @@ vec4 light_of_cut_slab(vec3 front, vec3 back, float s_front, float s_back, float
         s_at = s_here;
 #endif
         if (!crossed) break;
-        vec4 layer = seen_layer(surface, rising);
+        vec4 layer = layer_of(surface, rising);
 #ifdef LIT
         layer.rgb *= reflected(gradient_at(mix(front, back, share)), to_eye);
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// HEADLIGHT: there is one light, and it is at the eye.
-uniform vec4 ambient;                              // and the exponent
+//   HEADLIGHT  one light at the eye: nothing to be read, and no middle between two directions
+uniform vec4 ambient;  // and the exponent
 uniform float two_sided;
 #ifdef HEADLIGHT
 uniform vec4 headlight_diffuse, headlight_specular;
