@@ -410,7 +410,7 @@ TEST(GlGridSurfaces, CellsHaveEveryRoot) {
 // Clipping planes cut rays in cells before surfaces do: as on the CPU.
 TEST(GlGridSurfaces, CellsAreClipped) {
     GridScene scene = scene_of(unit_cube(8, scenes::waves), ramp(), surfaces_of(glass(0.3, 0.5, 0.7), Shading::smooth));
-    scene.clip = std::make_shared<const ClipRegion>(std::vector<ClipPlane>{{.point = {0.43, 0.5, 0.5}, .normal = {1, 0.3, -0.2}}});
+    scene.clip = std::make_shared<const ClipRegion>(ClipRegion{{{.point = {0.43, 0.5, 0.5}, .normal = {1, 0.3, -0.2}}}});
     for (const Projection projection : projections) {
         const Camera camera = view_of_unit_cube(projection);
         const Image by_rays = cpu().render(scene, camera, small), by_cells = gl().render(scene, camera, small, slabs("cells"));
