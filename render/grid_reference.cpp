@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/grid_reference.hpp"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -116,20 +113,23 @@ Light GridReference::light(const ScreenTransform::Ray& ray, bool from_origin) co
     return light.light();
 }
 
-std::vector<PixelTruth> GridReference::pixels(const Camera& camera, ImageSize size,
-                                              std::span<const PixelId> pixels) const {
+std::vector<PixelTruth> GridReference::pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels,
+                                              double slack) const {
     validate(camera, "camera");
     validate(size, "size");
     const ScreenTransform transform(camera, size);
-    std::vector<PixelTruth> truths(pixels.size());
-    using Range = oneapi::tbb::blocked_range<std::size_t>;
-    oneapi::tbb::parallel_for(Range(0, pixels.size(), 64), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const Light here = light(transform.ray({pixels[i].x + 0.5, pixels[i].y + 0.5}), transform.perspective());
-            truths[i] = {pixels[i], here, here, here};
-        }
+    return truths_of(pixels, size, slack,
+                     [&](const glm::dvec2& place) { return light(transform.ray(place), transform.perspective()); });
+}
+
+std::vector<PixelId> GridReference::sample(const Camera& camera, ImageSize size, std::size_t count,
+                                           std::uint64_t seed) const {
+    validate(camera, "camera");
+    validate(size, "size");
+    const ScreenTransform transform(camera, size);
+    return sample_pixels(size, count, seed, [&](const glm::dvec2& place) {
+        return !cells_along(*grid_, transform.ray(place), transform.perspective()).empty();
     });
-    return truths;
 }
 
 }  // namespace cellproj

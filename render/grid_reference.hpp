@@ -15,6 +15,7 @@
 // size, its distance from the origin or the eye's distance. Tests: grid_reference_test.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -48,9 +49,13 @@ public:
 
     Light light(const ScreenTransform::Ray& ray, bool from_origin) const;
 
-    // The truth of these pixels at their centres, in their order (low = high = light). Parallel over pixels, the same
-    // for any number of threads. Throws Error (option) for an unusable camera or size.
-    std::vector<PixelTruth> pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels) const;
+    // The truth of these pixels, in their order (truths_of). Throws Error (option) for an unusable camera or size or a
+    // pixel outside the picture.
+    std::vector<PixelTruth> pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels,
+                                   double slack = 0) const;
+
+    // `count` different pixels that see a cell of the grid, spread evenly (sample_pixels). Throws as `pixels`.
+    std::vector<PixelId> sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed = 1) const;
 
 private:
     std::shared_ptr<const Grid> grid_;

@@ -25,7 +25,6 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
         throw Error({ErrorKind::option, cuts, "no clipping planes and no bodies for a regular grid", "some", "leave them out, or draw the grid as tetrahedra (--as tets)"});
     if (wishes.named_order) refuse("--order", "auto for a regular grid, whose cells need no sorting", "another order");
     if (wishes.quality.check_rays > 0) refuse("--verify-order", "a mesh, whose cells are sorted", "a regular grid");
-    if (wishes.measured_method) refuse("--max-error", "--method for a regular grid, such as exact:1e-3", "--max-error");
     require_grid_drawn(wishes.backend, {wishes.quality.method, wishes.quality.target, wishes.sampling}, options.iso.any());
 }
 

@@ -24,7 +24,6 @@ struct PictureWishes {
     Backend backend;  // of a grid
     Quality quality;
     GridSampling sampling;  // of a grid
-    bool measured_method;  // --max-error
     bool named_order;      // --order, but for auto
 };
 

@@ -17,6 +17,7 @@
 #include "render/cpu/classification.hpp"
 #include "render/cpu/grid_kernels.hpp"
 #include "render/cpu/grid_volume.hpp"
+#include "render/grid_plan.hpp"
 
 namespace cellproj::cpu {
 
@@ -127,6 +128,7 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.drawn_as = "grid";
     statistics.order = "none";  // rays meet their cells one after the other
     statistics.order_exact = true;
+    statistics.plan = grid_decisions(scene, quality, Backend::cpu, statistics.counts.culled);
     *out = std::move(statistics);
     return image;
 }
