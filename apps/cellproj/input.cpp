@@ -52,16 +52,17 @@ std::vector<double> counted(std::size_t n) {
     return numbers;
 }
 
-const std::map<std::string, NumberType> number_types{
-    {"int8", NumberType::int8},     {"uint8", NumberType::uint8},   {"int16", NumberType::int16},
-    {"uint16", NumberType::uint16}, {"int32", NumberType::int32},   {"uint32", NumberType::uint32},
-    {"float32", NumberType::float32}, {"float64", NumberType::float64}};
+const std::map<std::string, NumberType> types_by_name = [] {
+    std::map<std::string, NumberType> types;
+    for (const NamedNumberType& named : number_types) types.emplace(named.name, named.type);
+    return types;
+}();
 
 void add_raw_options(CLI::App& command, InputOptions& options) {
     auto* dims = command.add_option("--dims", options.raw_dimensions, "FILE is bare voxels, NX NY NZ of them, x fastest")
                      ->expected(3)->type_name("NX NY NZ");
     auto* type = command.add_option("--type", options.raw_type, "Their type")
-                     ->check(CLI::IsMember(number_types))->type_name("TYPE");
+                     ->check(CLI::IsMember(types_by_name))->type_name("TYPE");
     dims->needs(type);
     type->needs(dims);
     command.add_flag("--big-endian", options.raw.big_endian, "Their bytes have the highest first")->needs(dims);
@@ -83,7 +84,7 @@ ReadOptions read_options(const InputOptions& options) {
     const auto vector3 = [](const std::vector<double>& v) { return glm::dvec3(v[0], v[1], v[2]); };
     result.raw->spacing = vector3(options.raw_spacing);
     result.raw->origin = vector3(options.raw_origin);
-    result.raw->type = number_types.at(options.raw_type);
+    result.raw->type = types_by_name.at(options.raw_type);
     result.raw->dimensions = {options.raw_dimensions[0], options.raw_dimensions[1], options.raw_dimensions[2]};
     return result;
 }
