@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/dataset.hpp"
+#include "mesh/grid_axis.hpp"
 
 namespace cellproj {
 
@@ -51,9 +51,5 @@ Lattice place_pieces(std::span<const std::array<GridAxis, 3>> axes, std::span<co
 // For each piece, which of its cells lie under finer pieces (i fastest). Throws Error (data) where finer pieces cover a part of a
 // cell only.
 std::vector<std::vector<bool>> covered_cells(const Lattice& lattice, std::span<const std::string> names, const std::string& place);
-
-// The datasets of pieces, each a grid of boxes, as one: `Dataset::pieces`, and the hexahedra that no finer piece covers (those that are
-// covered count as ghost cells). Throws Error as above, and (data) when a piece is no grid of boxes or lacks a field that another has.
-Dataset assemble_pieces(std::vector<Dataset> pieces, std::vector<std::string> names, const std::string& place);
 
 }  // namespace cellproj

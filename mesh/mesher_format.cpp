@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/byte_stream.hpp"
+#include "mesh/io/byte_stream.hpp"
 #include "mesh/error.hpp"
 
 namespace cellproj {

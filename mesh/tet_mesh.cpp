@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -21,7 +22,7 @@ namespace cellproj {
 
 namespace {
 
-// One side of a face: its vertices but the smallest (the bucket it lies in says that one), ascending, and whose it is.
+// One side of a face: its vertices but the smallest (the list it stands in says that one), ascending, and whose it is.
 struct FaceSide {
     VertexId middle, largest;
     CellId cell;
@@ -41,37 +42,56 @@ std::array<VertexId, 3> sorted_face(const std::array<VertexId, 4>& tet, int face
     return v;
 }
 
-// All face sides, grouped by the smallest vertex of the face (a counting sort).
-struct FaceBuckets {
+// The vertices that are the smallest of some face of a cell: the smallest, and the second one, which is that of the face opposite to it.
+std::pair<VertexId, VertexId> two_smallest(const std::array<VertexId, 4>& tet) {
+    const auto [a, b] = std::minmax(tet[0], tet[1]);
+    const auto [c, d] = std::minmax(tet[2], tet[3]);
+    return {std::min(a, c), std::min(std::max(a, c), std::min(b, d))};
+}
+
+// The cells that have a face whose smallest vertex is this one, ascending, for each vertex (a counting sort). Their faces are found when
+// they are paired: listed all at once they would take eight times as much.
+struct CellBuckets {
     std::vector<std::size_t> begin;  // #P + 1
-    std::vector<FaceSide> sides;     // 4·#T
+    std::vector<CellId> cells;       // up to 2·#T
 };
 
-FaceBuckets bucket_faces(const TetMesh& mesh) {
-    FaceBuckets buckets;
+CellBuckets bucket_cells(const TetMesh& mesh) {
+    CellBuckets buckets;
     buckets.begin.assign(mesh.points.size() + 2, 0);
     for (const auto& tet : mesh.tets) {
-        for (int face = 0; face < 4; ++face) ++buckets.begin[sorted_face(tet, face)[0] + 2];
+        const auto [first, second] = two_smallest(tet);
+        ++buckets.begin[first + 2];
+        if (second != first) ++buckets.begin[second + 2];
     }
     for (std::size_t v = 2; v < buckets.begin.size(); ++v) buckets.begin[v] += buckets.begin[v - 1];
-    buckets.sides.resize(4 * mesh.tets.size());
+    buckets.cells.resize(buckets.begin.back());
     for (CellId cell = 0; cell < mesh.tets.size(); ++cell) {
-        for (int face = 0; face < 4; ++face) {
-            const auto v = sorted_face(mesh.tets[cell], face);
-            buckets.sides[buckets.begin[v[0] + 1]++] = {v[1], v[2], cell, static_cast<std::uint8_t>(face)};
-        }
+        const auto [first, second] = two_smallest(mesh.tets[cell]);
+        buckets.cells[buckets.begin[first + 1]++] = cell;
+        if (second != first) buckets.cells[buckets.begin[second + 1]++] = cell;
     }
     buckets.begin.pop_back();
     return buckets;
 }
 
-// Pairs the sides of each face within one bucket; returns how many sides were left over on faces with more than two.
-std::size_t pair_sides(std::vector<FaceSide>::iterator begin, std::vector<FaceSide>::iterator end,
-                       std::vector<std::array<CellId, 4>>& neighbours) {
-    std::sort(begin, end);
+// The sides of all faces of these cells whose smallest vertex is v.
+void find_sides(const TetMesh& mesh, std::span<const CellId> cells, VertexId v, std::vector<FaceSide>& sides) {
+    sides.clear();
+    for (const CellId cell : cells) {
+        for (int face = 0; face < 4; ++face) {
+            const auto vertices = sorted_face(mesh.tets[cell], face);
+            if (vertices[0] == v) sides.push_back({vertices[1], vertices[2], cell, static_cast<std::uint8_t>(face)});
+        }
+    }
+}
+
+// Pairs the sides of each face, of those with one smallest vertex; returns how many sides were left over on faces with more than two.
+std::size_t pair_sides(std::vector<FaceSide>& sides, std::vector<std::array<CellId, 4>>& neighbours) {
+    std::sort(sides.begin(), sides.end());
     std::size_t left_over = 0;
-    for (auto run = begin; run != end;) {
-        const auto run_end = std::find_if_not(run, end, [&](const FaceSide& side) { return side.same_face(*run); });
+    for (auto run = sides.begin(); run != sides.end();) {
+        const auto run_end = std::find_if_not(run, sides.end(), [&](const FaceSide& side) { return side.same_face(*run); });
         const auto other = std::find_if(run, run_end, [&](const FaceSide& side) { return side.cell != run->cell; });
         if (other != run_end) {
             neighbours[run->cell][run->face] = other->cell;
@@ -167,16 +187,16 @@ void validate(const TetMesh& mesh, const std::string& place) {
 Adjacency build_adjacency(const TetMesh& mesh) {
     Adjacency adjacency;
     adjacency.neighbours.assign(mesh.tets.size(), {no_cell, no_cell, no_cell, no_cell});
-    FaceBuckets buckets = bucket_faces(mesh);
+    const CellBuckets buckets = bucket_cells(mesh);
     std::atomic<std::size_t> left_over{0};
     oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, mesh.points.size(), 1024),
                               [&](const oneapi::tbb::blocked_range<std::size_t>& range) {
                                   std::size_t count = 0;
+                                  std::vector<FaceSide> sides;
                                   for (std::size_t v = range.begin(); v != range.end(); ++v) {
-                                      const auto sides = buckets.sides.begin();
-                                      count += pair_sides(sides + static_cast<std::ptrdiff_t>(buckets.begin[v]),
-                                                          sides + static_cast<std::ptrdiff_t>(buckets.begin[v + 1]),
-                                                          adjacency.neighbours);
+                                      const auto cells = std::span(buckets.cells).subspan(buckets.begin[v], buckets.begin[v + 1] - buckets.begin[v]);
+                                      find_sides(mesh, cells, static_cast<VertexId>(v), sides);
+                                      count += pair_sides(sides, adjacency.neighbours);
                                   }
                                   left_over += count;
                               });

@@ -80,7 +80,7 @@ struct Adjacency {
     std::size_t overused_faces = 0;
 };
 
-// Linear in the number of cells; 16 bytes per cell kept, 64 more while building. Runs on all cores.
+// Linear in the number of cells; 16 bytes per cell kept, and while building 8 more per cell and 8 per point. Runs on all cores.
 Adjacency build_adjacency(const TetMesh& mesh);
 
 struct BoundaryFace {

@@ -21,32 +21,6 @@ constexpr double two_points_offset = 0.28867513459481288;  // 1/√12: exact for
 // is left, 4e-5 of the light, of degree at most 18: its remainder is below 1e-9 of that (that of t¹⁶ is 4e-10).
 constexpr double largest_depth = 1.0 / 16;
 
-// Where the derivative, 3 times the quadratic with control points d, vanishes inside 0..1.
-std::vector<double> turning_points(const Cubic& s) {
-    const auto& c = s.control;
-    const double d0 = c[1] - c[0], d1 = c[2] - c[1], d2 = c[3] - c[2];
-    const double a = (d2 - d1) - (d1 - d0), half_b = d1 - d0;
-    const double discriminant = half_b * half_b - a * d0;
-    std::vector<double> roots;
-    if (!(discriminant >= 0)) return roots;
-    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
-    for (const double root : {a != 0 ? q / a : -1.0, q != 0 ? d0 / q : -1.0}) {
-        if (root > 0 && root < 1) roots.push_back(root);
-    }
-    std::sort(roots.begin(), roots.end());
-    return roots;
-}
-
-// Where the scalar, monotonic from `begin` to `end`, is `value`, which lies between its ends: halved to the last bit.
-double place_of(const Cubic& s, double value, double begin, double end) {
-    const bool rises = s.at(begin) < s.at(end);
-    for (;;) {
-        const double middle = 0.5 * (begin + end);
-        if (middle <= begin || middle >= end) return middle;
-        ((s.at(middle) < value) == rises ? begin : end) = middle;
-    }
-}
-
 // The places that cut 0..1 into stretches, both ends included, ascending.
 std::vector<double> cuts(const Cubic& s, const std::vector<double>& breakpoints) {
     std::vector<double> places{0.0}, turns = turning_points(s);
@@ -63,29 +37,11 @@ std::vector<double> cuts(const Cubic& s, const std::vector<double>& breakpoints)
     return places;
 }
 
-// De Casteljau's construction with a parameter for each of its three rounds.
-double blossom(const Cubic& cubic, const std::array<double, 3>& t) {
-    std::array<double, 4> p = cubic.control;
-    for (std::size_t round = 0; round < 3; ++round) {
-        for (std::size_t i = 0; i + round < 3; ++i)
-            p[i] = (1.0 - t[round]) * p[i] + t[round] * p[i + 1];
-    }
-    return p[0];
-}
-
 double largest(const glm::dvec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
 }  // namespace
-
-double Cubic::at(double t) const {
-    return blossom(*this, {t, t, t});
-}
-
-Cubic Cubic::part(double begin, double end) const {
-    return {{at(begin), blossom(*this, {begin, begin, end}), blossom(*this, {begin, end, end}), at(end)}};
-}
 
 double CubicLight::Stretch::extinction(double t) const {
     return piece->extinction(std::clamp(scalar.at(t), piece->begin, piece->end));
@@ -148,6 +104,13 @@ void CubicLight::integrate(const Stretch& stretch) {
         }
     }
     depth_ += depth;
+}
+
+void CubicLight::add(const Light& surface) {
+    assert(surface.opacity >= 0 && surface.opacity <= 1);
+    if (opaque()) return;
+    color_ += surface.color * std::exp(-depth_);
+    depth_ -= std::log1p(-surface.opacity);
 }
 
 Light CubicLight::light() const {

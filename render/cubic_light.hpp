@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The light of one ray through cells of a regular grid, segment by segment from front to back, in float64. Along a
-// straight line a trilinear scalar is a cubic. As ray_light.hpp, it uses only the nodes of the transfer function and
-// shares no code with the integrals and tables that it judges.
+// The light of one ray through cells of a regular grid, segment by segment from front to back, in float64 (cubic.hpp). As
+// ray_light.hpp, it uses only the nodes of the transfer function and shares no code with the integrals and tables that
+// it judges.
 #pragma once
 
-#include <array>
-
 #include "classify/transfer_function.hpp"
+#include "render/cubic.hpp"
 
 namespace cellproj {
-
-// A scalar along a segment, 0 ≤ t ≤ 1, by its Bézier control points: it stays between the smallest and the largest of
-// them.
-struct Cubic {
-    std::array<double, 4> control;
-
-    double at(double t) const;
-    Cubic part(double begin, double end) const;  // the same curve from begin to end
-};
 
 // RKE00 Eq. 1 along the ray. A segment is cut where the scalar turns back and where it meets a breakpoint of the
 // transfer function. On such a stretch q and τ are polynomials in t, of degree at most 6 and 3; it is halved until its
@@ -34,6 +24,9 @@ public:
     // The next segment, farther from the eye than all before: `length` ≥ 0 [mesh units], control points finite, |s| ≤
     // 1e150.
     void add(const Cubic& scalar, double length);
+
+    // A surface without thickness, farther than all before: associated, opacity 0..1.
+    void add(const Light& surface);
 
     // Nothing farther can be seen: the transmittance is 0 in float64.
     bool opaque() const { return depth_ > 746.0; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a picture of a regular grid was drawn by and why, as plan.hpp tells it of a mesh.
+// What a picture of a regular grid takes, in words: as plan.hpp for meshes.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,14 @@
 
 namespace cellproj {
 
-// In the order of the work: cells, sampling, field, axes, order, method. `culled`: cells that were not looked at. Either OpenGL backend
-// stands for both.
-std::vector<Decision> grid_decisions(const GridScene& scene, const GridQuality& quality, Backend backend, std::size_t culled);
+// As found for a scene by the renderer that draws it.
+struct GridFacts {
+    Backend backend;
+    std::size_t cells, drawn;  // of the grid, and those that are not left out
+    bool medium;               // whether there is light between surfaces
+};
+
+// Cells, order, segments, surfaces and gradients.
+std::vector<Decision> plan_of(const GridScene& scene, const GridQuality& quality, const GridFacts& facts);
 
 }  // namespace cellproj

@@ -10,6 +10,8 @@
 
 #include <glm/common.hpp>
 
+#include "mesh/grid_gradient.hpp"
+
 namespace cellproj {
 
 namespace {
@@ -61,6 +63,33 @@ GridCell cell_at(const Grid& grid, const glm::dvec3& point) {
     return cell;
 }
 
+// On the planes that a crossing was made of, exactly 0 or 1: what lies across such a face then has no share.
+glm::dvec3 place_in_cell(const Bounds& box, const ScreenTransform::Ray& ray, double t) {
+    const glm::dvec3 place = (ray.origin + t * ray.direction - box.low) / (box.high - box.low);
+    glm::dvec3 u = glm::clamp(place, 0.0, 1.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double o = ray.origin[axis], d = ray.direction[axis];
+        if (d == 0) continue;
+        if ((box.low[axis] - o) / d == t) u[axis] = 0.0;
+        if ((box.high[axis] - o) / d == t) u[axis] = 1.0;
+    }
+    return u;
+}
+
+// Between the values of the corners that have a share: where these are equal, or nearly, rounding must not make another
+// value of them.
+double scalar_at(const std::array<double, 8>& corners, const glm::dvec3& u) {
+    const std::array<double, 8> weights = corner_weights(u);
+    double sum = 0.0, low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t c = 0; c < 8; ++c) {
+        if (weights[c] == 0) continue;
+        sum += weights[c] * corners[c];
+        low = std::min(low, corners[c]);
+        high = std::max(high, corners[c]);
+    }
+    return std::clamp(sum, low, high);
+}
+
 }  // namespace
 
 std::vector<GridCrossing> cells_along(const Grid& grid, const ScreenTransform::Ray& ray, bool from_origin) {
@@ -85,50 +114,104 @@ Cubic scalar_along(const Grid& grid, const GridCrossing& crossing, const ScreenT
     const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
     const double least = *low, most = *high;
     const Bounds box = grid.cell_bounds(crossing.cell);
-    const auto inside = [&](double t) {
-        return glm::clamp((ray.origin + t * ray.direction - box.low) / (box.high - box.low), 0.0, 1.0);
-    };
-    const glm::dvec3 a = inside(crossing.enter), b = inside(crossing.leave);
-    // Where all corners are equal, or nearly, rounding must not make another value of them.
-    const auto value = [&](double x, double y, double z) { return interpolate(corners, {x, y, z}); };
+    const glm::dvec3 a = place_in_cell(box, ray, crossing.enter), b = place_in_cell(box, ray, crossing.leave);
+    const auto value = [&](double x, double y, double z) { return scalar_at(corners, {x, y, z}); };
     const auto bounded = [&](double s) { return std::clamp(s, least, most); };
-    return {{bounded(value(a.x, a.y, a.z)),
-             bounded((value(b.x, a.y, a.z) + value(a.x, b.y, a.z) + value(a.x, a.y, b.z)) / 3),
-             bounded((value(a.x, b.y, b.z) + value(b.x, a.y, b.z) + value(b.x, b.y, a.z)) / 3),
-             bounded(value(b.x, b.y, b.z))}};
+    return {{value(a.x, a.y, a.z), bounded((value(b.x, a.y, a.z) + value(a.x, b.y, a.z) + value(a.x, a.y, b.z)) / 3),
+             bounded((value(a.x, b.y, b.z) + value(b.x, a.y, b.z) + value(b.x, b.y, a.z)) / 3), value(b.x, b.y, b.z)}};
 }
 
-GridReference::GridReference(std::shared_ptr<const Grid> grid, std::shared_ptr<const TransferFunction> transfer)
-    : grid_(std::move(grid)), transfer_(std::move(transfer)) {
-    assert(grid_ && transfer_);
-    validate(*grid_, "grid");
+// What a ray crosses in one cell.
+struct GridReference::Piece {
+    GridCrossing crossing;
+    Cubic scalar;
+    std::vector<IsoCrossing> surfaces;  // along it
+
+    double at(double t) const { return (1 - t) * crossing.enter + t * crossing.leave; }
+};
+
+std::vector<GridReference::Piece> GridReference::pieces_along(const ScreenTransform::Ray& ray, bool from_origin) const {
+    std::vector<Piece> pieces;
+    for (const GridCrossing& crossing : cells_along(*scene_.grid, ray, from_origin)) {
+        Piece piece{crossing, scalar_along(*scene_.grid, crossing, ray), {}};
+        // One number, also where the faces of the grid lie too close for float64.
+        if (!pieces.empty() && pieces.back().crossing.leave == crossing.enter && scene_.grid->location == FieldLocation::points)
+            piece.scalar.control[0] = pieces.back().scalar.control[3];
+        if (scene_.surfaces) piece.surfaces = crossings(scene_.surfaces->isosurfaces, piece.scalar);
+        pieces.push_back(std::move(piece));
+    }
+    return pieces;
+}
+
+GridReference::GridReference(std::shared_ptr<const Grid> grid, std::shared_ptr<const TransferFunction> transfer,
+                             std::shared_ptr<const SurfaceScene> surfaces)
+    : scene_{std::move(grid), std::move(transfer), std::move(surfaces)} {
+    validate(scene_);
+}
+
+std::vector<GridSurfaceHit> GridReference::surfaces_along(const ScreenTransform::Ray& ray, bool from_origin) const {
+    std::vector<GridSurfaceHit> hits;
+    for (const Piece& piece : pieces_along(ray, from_origin)) {
+        for (const IsoCrossing& c : piece.surfaces) {
+            const double t = piece.at(c.t);
+            hits.push_back({c.surface, t, c.rising, piece.crossing.cell, place_in_cell(scene_.grid->cell_bounds(piece.crossing.cell), ray, t)});
+        }
+    }
+    return hits;
+}
+
+glm::dvec3 GridReference::gradient_at(const GridSurfaceHit& hit) const {
+    if (!has_surfaces(scene_) || scene_.surfaces->shading == Shading::unlit) return glm::dvec3(0);
+    const Grid& grid = *scene_.grid;
+    if (scene_.surfaces->shading == Shading::flat) return trilinear_gradient(grid.corner_values(hit.cell), hit.u, grid.cell_edges(hit.cell));
+    const std::array<double, 8> weights = corner_weights(hit.u);
+    glm::dvec3 sum(0);
+    for (std::size_t c = 0; c < 8; ++c)
+        sum += weights[c] * point_gradient(grid, {hit.cell[0] + (c & 1U), hit.cell[1] + (c >> 1U & 1U), hit.cell[2] + (c >> 2U)});
+    return sum;
+}
+
+// The surface as a layer of the light that it sends back along the ray.
+Light GridReference::reflected(const GridSurfaceHit& hit, const glm::dvec3& direction) const {
+    const SurfaceScene& surfaces = *scene_.surfaces;
+    const IsoSurface& surface = surfaces.isosurfaces.surfaces()[hit.surface];
+    const glm::dvec3& color = seen_color(surface, hit.rising);
+    if (surfaces.shading == Shading::unlit) return layer(color, surface.opacity);
+    // The front side is that of the lower scalars.
+    return layer(shade(surfaces.lighting, color, -gradient_at(hit), -direction), surface.opacity);
 }
 
 Light GridReference::light(const ScreenTransform::Ray& ray, bool from_origin) const {
-    CubicLight light(*transfer_);
-    for (const GridCrossing& crossing : cells_along(*grid_, ray, from_origin)) {
+    CubicLight light(*scene_.transfer);
+    for (const Piece& piece : pieces_along(ray, from_origin)) {
         if (light.opaque()) break;
-        light.add(scalar_along(*grid_, crossing, ray), crossing.leave - crossing.enter);
+        const double length = piece.crossing.leave - piece.crossing.enter;
+        double begin = 0.0;
+        for (const IsoCrossing& c : piece.surfaces) {
+            light.add(piece.scalar.part(begin, c.t), (c.t - begin) * length);
+            const double t = piece.at(c.t);
+            light.add(reflected({c.surface, t, c.rising, piece.crossing.cell, place_in_cell(scene_.grid->cell_bounds(piece.crossing.cell), ray, t)},
+                                ray.direction));
+            begin = c.t;
+        }
+        light.add(begin > 0 ? piece.scalar.part(begin, 1.0) : piece.scalar, (1 - begin) * length);
     }
     return light.light();
 }
 
-std::vector<PixelTruth> GridReference::pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels,
-                                              double slack) const {
+std::vector<PixelTruth> GridReference::pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels, double slack) const {
     validate(camera, "camera");
     validate(size, "size");
     const ScreenTransform transform(camera, size);
-    return truths_of(pixels, size, slack,
-                     [&](const glm::dvec2& place) { return light(transform.ray(place), transform.perspective()); });
+    return truths_of(pixels, size, slack, [&](const glm::dvec2& place) { return light(transform.ray(place), transform.perspective()); });
 }
 
-std::vector<PixelId> GridReference::sample(const Camera& camera, ImageSize size, std::size_t count,
-                                           std::uint64_t seed) const {
+std::vector<PixelId> GridReference::sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed) const {
     validate(camera, "camera");
     validate(size, "size");
     const ScreenTransform transform(camera, size);
     return sample_pixels(size, count, seed, [&](const glm::dvec2& place) {
-        return !cells_along(*grid_, transform.ray(place), transform.perspective()).empty();
+        return !cells_along(*scene_.grid, transform.ray(place), transform.perspective()).empty();
     });
 }
 

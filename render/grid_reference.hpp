@@ -8,8 +8,11 @@
 // - Fields on points are trilinear in a cell, fields on cells constant. Blanked cells are empty.
 // - Perspective rays begin at the eye, parallel ones at infinity.
 // - A ray that runs in a plane of the grid is in the cells above it (towards +x, +y, +z); in the outermost plane there,
-// it is
-//   outside.
+//   it is outside.
+// - Isosurfaces lie where the trilinear scalar passes their value: all roots of the cubic (cubic.hpp), the medium cut at
+//   each. The scalar on a face is one number for both its cells, so that a surface in it is met exactly once. They are
+//   lit by the trilinear gradient in the cell (flat) or by the gradients of its corners (mesh/grid_gradient.hpp),
+//   trilinear in between (smooth).
 //
 // Accuracy: 1e-10 absolute for colours within 0..1, besides what it changes to move the axes by 1e-15 times the grid's
 // size, its distance from the origin or the eye's distance. Tests: grid_reference_test.
@@ -24,6 +27,7 @@
 #include "mesh/grid.hpp"
 #include "project/camera.hpp"
 #include "render/cubic_light.hpp"
+#include "render/grid_scene.hpp"
 #include "render/reference.hpp"
 
 namespace cellproj {
@@ -38,28 +42,45 @@ struct GridCrossing {
 // unit length. Each crossing begins where the one before ends, but for blanked cells between them.
 std::vector<GridCrossing> cells_along(const Grid& grid, const ScreenTransform::Ray& ray, bool from_origin);
 
-// The trilinear scalar of a cell from `enter` to `leave`.
+// The trilinear scalar of a cell from `enter` to `leave`. Where it leaves one cell and enters the next, it is the same to the bit.
 Cubic scalar_along(const Grid& grid, const GridCrossing& crossing, const ScreenTransform::Ray& ray);
+
+// A place where a ray meets an isosurface.
+struct GridSurfaceHit {
+    std::size_t surface;  // index into the scene's isosurfaces, by ascending value
+    double t;             // length along the ray from its origin
+    bool rising;          // the front side is seen
+    GridCell cell;
+    glm::dvec3 u;         // where in it
+};
 
 // Immutable: any number of threads may ask at once.
 class GridReference {
 public:
-    // Neither may be null. Throws Error (data) when the grid is refused by `validate`.
-    GridReference(std::shared_ptr<const Grid> grid, std::shared_ptr<const TransferFunction> transfer);
+    // Of a GridScene of these parts. Throws as `validate` of it.
+    GridReference(std::shared_ptr<const Grid> grid, std::shared_ptr<const TransferFunction> transfer,
+                  std::shared_ptr<const SurfaceScene> surfaces = nullptr);
 
     Light light(const ScreenTransform::Ray& ray, bool from_origin) const;
 
+    // The isosurfaces that a ray meets, also behind opaque ones, front to back; and the gradient there that their shading
+    // takes [scalar / mesh unit]: 0 where there is none, or unlit.
+    std::vector<GridSurfaceHit> surfaces_along(const ScreenTransform::Ray& ray, bool from_origin) const;
+    glm::dvec3 gradient_at(const GridSurfaceHit& hit) const;
+
     // The truth of these pixels, in their order (truths_of). Throws Error (option) for an unusable camera or size or a
     // pixel outside the picture.
-    std::vector<PixelTruth> pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels,
-                                   double slack = 0) const;
+    std::vector<PixelTruth> pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels, double slack = 0) const;
 
     // `count` different pixels that see a cell of the grid, spread evenly (sample_pixels). Throws as `pixels`.
     std::vector<PixelId> sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed = 1) const;
 
 private:
-    std::shared_ptr<const Grid> grid_;
-    std::shared_ptr<const TransferFunction> transfer_;
+    struct Piece;
+    std::vector<Piece> pieces_along(const ScreenTransform::Ray& ray, bool from_origin) const;
+    Light reflected(const GridSurfaceHit& hit, const glm::dvec3& direction) const;
+
+    GridScene scene_;
 };
 
 }  // namespace cellproj

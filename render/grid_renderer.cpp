@@ -6,6 +6,7 @@
 #include "render/gl/egl_context.hpp"
 #include "render/gl/grid_gl_renderer.hpp"
 #include "render/gl/osmesa_context.hpp"
+#include "render/surface_method.hpp"
 
 namespace cellproj {
 
@@ -20,7 +21,8 @@ void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfac
     if (quality.target != TargetFormat::rgba32f) refuse("--target", "rgba32f for a regular grid", to_string(quality.target), as_tets);
     if (quality.sampling.cut != GridSampling::Cut::cells)
         refuse("--sampling", "cells for a regular grid on the CPU", to_string(quality.sampling), "use the OpenGL backend (--backend gl)");
-    if (surfaces) refuse("--iso", "no isosurfaces for a regular grid", "some", as_tets);
+    if (surfaces && !takes_surfaces(quality.method))
+        refuse("--method", "a method of light per pixel, blended once, for isosurfaces", to_string(quality.method), "leave it out");
 }
 
 std::unique_ptr<GridRenderer> make_grid_renderer(Backend backend, const RendererOptions& options) {

@@ -9,9 +9,9 @@
 
 #include <glm/geometric.hpp>
 
-#include "render/annotation_color_bar.hpp"
-#include "render/annotation_outline.hpp"
-#include "render/annotation_triad.hpp"
+#include "render/annotation/color_bar.hpp"
+#include "render/annotation/outline.hpp"
+#include "render/annotation/triad.hpp"
 #include "tests/support/annotation_fixtures.hpp"
 
 namespace cellproj {

@@ -12,8 +12,8 @@
 #include <random>
 
 #include "mesh/error.hpp"
-#include "render/annotation_text.hpp"
-#include "render/annotation_ticks.hpp"
+#include "render/annotation/text.hpp"
+#include "render/annotation/ticks.hpp"
 #include "tests/support/folder_test.hpp"
 
 namespace cellproj {

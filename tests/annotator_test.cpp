@@ -11,8 +11,8 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
-#include "render/annotation.hpp"
-#include "render/annotation_outline.hpp"
+#include "render/annotation/annotation.hpp"
+#include "render/annotation/outline.hpp"
 #include "tests/support/annotation_fixtures.hpp"
 #include "tests/support/folder_test.hpp"
 

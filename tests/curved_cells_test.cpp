@@ -20,10 +20,10 @@
 #include <vtkUnstructuredGrid.h>
 
 #include "mesh/cell_faces.hpp"
-#include "mesh/curved_cells.hpp"
+#include "mesh/io/curved_cells.hpp"
 #include "mesh/tetrahedralize.hpp"
 #include "mesh/text_formats.hpp"
-#include "mesh/vtk_conversion.hpp"
+#include "mesh/io/vtk_conversion.hpp"
 #include "tests/read_fixtures.hpp"
 
 namespace cellproj {

@@ -74,7 +74,7 @@ TEST_F(GridCommand, AGridIsDrawnAsItIs) {
 }
 
 TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
-    for (const char* option : {"--iso 20", "--order mpvo", "--cell-values averaged", "--verify-order", "--clip 1,1,1:0,0,1",
+    for (const char* option : {"--iso 20 --iso-method table", "--iso 20 --backend gl", "--order mpvo", "--cell-values averaged", "--verify-order", "--clip 1,1,1:0,0,1",
                                "--clip-box 0,0,0,2,2,2"}) {
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "tetrahedra") << option;
         std::filesystem::remove(folder_ / "p.png");
@@ -83,6 +83,15 @@ TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
     for (const char* option : {"--target rgba8", "--method shirley-tuchman", "--opacity-field Points:x"})
         expect_refused(std::string(voxels) + " --as grid " + option, {"regular grid", "--as tets"});
     EXPECT_EQ(run(std::string(voxels) + " --as boxes").code, 2);
+}
+
+TEST_F(GridCommand, IsosurfacesAreThoseOfTheGrid) {
+    for (const char* option : {"--iso 20", "--iso 15,25 --shading flat --light 1,0,0", "--iso 20:red:0.5 --volume --as grid"})
+        EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "grid") << option;
+    const Outcome explained = run(std::string(voxels) + " --iso 20,30 --explain");
+    for (const char* words : {"exact roots", "of all points", "nothing is seen between the isosurfaces"})
+        EXPECT_NE(explained.text.find(words), std::string::npos) << explained.text;
+    EXPECT_EQ(drawn_as(std::string(voxels) + " --iso 20 --as tets"), "tetrahedra");
 }
 
 TEST_F(GridCommand, OpenGlDrawsCellsAndSlabs) {
@@ -105,7 +114,7 @@ TEST_F(GridCommand, ABoundChoosesAWayAndExplainTellsIt) {
     const auto picture = [&] { return nlohmann::json::parse(content("s.json")).at("pictures").at(0); };
     const Outcome outcome = render("--max-error 0.01 --explain");
     ASSERT_EQ(outcome.code, 0) << outcome.text;
-    for (const char* words : {"--max-error 0.01: ", "  cells, integral", "  the fastest within it", "  sampling  cells", "rays walk", "trilinear in a cell", "uniform"})
+    for (const char* words : {"--max-error 0.01: ", "  cells, integral", "  the fastest within it", "  order     none", "rays meet their cells", "  segments  "})
         EXPECT_NE(outcome.text.find(words), std::string::npos) << "no \"" << words << "\" in: " << outcome.text;
     EXPECT_LE(picture().at("error"), 0.01);
     EXPECT_EQ(picture().at("drawn_as"), "grid");

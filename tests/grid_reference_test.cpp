@@ -9,11 +9,13 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
+#include "mesh/grid_gradient.hpp"
 #include "render/ray_light.hpp"
 #include "tests/support/grids.hpp"
 #include "tests/support/meshes.hpp"
@@ -236,6 +238,161 @@ TEST(GridReference, ExtremesStayFinite) {
     }
     EXPECT_GT(met, 200);
     EXPECT_LT(worst, 1e-12);
+}
+
+// Surfaces alone: no light between them.
+GridReference judge_of_surfaces(Grid grid, std::vector<IsoSurface> surfaces, Shading shading = Shading::unlit, TransferFunction medium = constant_medium(0)) {
+    return {std::make_shared<Grid>(std::move(grid)), std::make_shared<TransferFunction>(std::move(medium)),
+            std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::move(surfaces)), shading, {}})};
+}
+
+// Three roots in one cell: on the diagonal of the unit cell with these corners the cubic is (t − 1/5)(t − 1/2)(t − 4/5), whose Bézier points
+// are the means of the corners with 0, 1, 2, 3 ends up.
+TEST(GridReference, AllRootsOfACubicInTheirOrder) {
+    const std::array<double, 4> control{-0.08, -0.08 + 0.66 / 3, -0.08 + 2 * 0.66 / 3 - 0.5, 0.08};
+    const Grid grid = unit_cube(1, [&](const glm::dvec3& p) { return control[static_cast<std::size_t>(p.x + p.y + p.z + 0.5)]; });
+    const double third = 1 / std::sqrt(3.0), root3 = std::sqrt(3.0);
+    const Ray diagonal{{-1, -1, -1}, {third, third, third}};
+    const auto hits = judge_of_surfaces(grid, {{.value = 0, .opacity = 0.25}}).surfaces_along(diagonal, true);
+    ASSERT_EQ(hits.size(), 3U);
+    for (const auto& [i, t, rising] : {std::tuple(0, 0.2, true), std::tuple(1, 0.5, false), std::tuple(2, 0.8, true)}) {
+        const GridSurfaceHit& hit = hits[static_cast<std::size_t>(i)];
+        EXPECT_NEAR(hit.t, root3 * (1 + t), 1e-14);
+        EXPECT_EQ(hit.rising, rising);
+        for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(hit.u[axis], t, 1e-14);
+    }
+    // Mixed with a medium τ = 1: cut at each of them. Front red, back blue.
+    const IsoSurface paper{.value = 0, .color = {1, 0, 0}, .opacity = 0.25, .back_color = glm::dvec3(0, 0, 1)};
+    const TransferFunction black{OpticalModel::density, {{0, {0, 0, 0}}}, {{0, 1}}};
+    const Light light = judge_of_surfaces(grid, {paper}, Shading::unlit, black).light(diagonal, true);
+    EXPECT_NEAR(light.color.r, 0.25 * std::exp(-0.2 * root3) + 0.75 * 0.75 * 0.25 * std::exp(-0.8 * root3), 1e-14);
+    EXPECT_NEAR(light.color.b, 0.75 * 0.25 * std::exp(-0.5 * root3), 1e-14);
+    EXPECT_NEAR(light.opacity, 1 - 0.75 * 0.75 * 0.75 * std::exp(-root3), 1e-14);
+}
+
+// A surface in the planes of the grid, through its points, and cells that are wholly at the isovalue: once where the ray changes sides.
+TEST(GridReference, SurfacesInTheFacesAreMetOnce) {
+    const GridReference plane = judge_of_surfaces(unit_cube(4, [](const glm::dvec3& p) { return p.z; }), {{.value = 0.5, .opacity = 0.5}, {.value = 0.75, .opacity = 0.5}});
+    std::mt19937_64 random(311);
+    std::uniform_real_distribution<double> unit(0.2, 0.7);
+    for (int trial = 0; trial < 2000; ++trial) {
+        const auto snapped = [&](double x) { return trial % 3 == 0 ? std::round(4 * x) / 4 : x; };
+        const glm::dvec3 from(snapped(unit(random)), snapped(unit(random)), -1), to(snapped(unit(random)), snapped(unit(random)), 2);
+        const Ray up{from, glm::normalize(to - from)}, down{to, glm::normalize(from - to)};
+        EXPECT_NEAR(plane.light(up, true).opacity, 0.75, 1e-15) << trial;
+        EXPECT_NEAR(plane.light(down, true).opacity, 0.75, 1e-15) << trial;
+    }
+    // The plateau between 1/4 and 3/4 belongs to the side above.
+    const auto plateau = [](const glm::dvec3& p) { return std::min(p.z, 0.25) + std::max(p.z - 0.75, 0.0); };
+    const GridReference step = judge_of_surfaces(unit_cube(4, plateau), {{.value = 0.25, .opacity = 0.5}});
+    for (const double x : {0.25, 0.3, 0.5}) {
+        const auto hits = step.surfaces_along({{x, x, -1}, {0, 0, 1}}, true);
+        ASSERT_EQ(hits.size(), 1U);
+        EXPECT_EQ(hits[0].t, 1.25);
+        EXPECT_EQ(step.surfaces_along({{x, x, 2}, {0, 0, -1}}, true).at(0).t, 1.75);
+    }
+    // A ray in the surface itself never changes sides; one that touches it does so twice or never.
+    EXPECT_TRUE(plane.surfaces_along({{-1, 0.3, 0.5}, {1, 0, 0}}, true).empty());
+    const GridReference roof = judge_of_surfaces(unit_cube(4, [](const glm::dvec3& p) { return 0.5 - std::abs(p.z - 0.5); }), {{.value = 0.5}});
+    EXPECT_EQ(roof.surfaces_along({{0.3, 0.3, -1}, {0, 0, 1}}, true).size() % 2, 0U);
+}
+
+// Behind blanked cells the field begins anew: the jump over them is no surface.
+TEST(GridReference, NoSurfacesInBlankedCells) {
+    Grid grid = unit_cube(4, [](const glm::dvec3& p) { return p.z; });
+    grid.blanked.assign(grid.cell_count(), 0);
+    for (std::size_t i = 0; i < 16; ++i) grid.blanked[i + 16] = 1;  // z from 1/4 to 1/2
+    const GridReference reference = judge_of_surfaces(grid, {{.value = 0.3, .opacity = 0.5}, {.value = 0.6, .opacity = 0.5}});
+    EXPECT_EQ(reference.surfaces_along({{0.3, 0.3, -1}, {0, 0, 1}}, true).size(), 1U);
+    Grid cells = unit_cube(4, [](const glm::dvec3& p) { return p.z; });
+    cells.location = FieldLocation::cells;
+    cells.values.resize(cells.cell_count());
+    EXPECT_THROW(judge_of_surfaces(cells, {{.value = 0.3}}), Error);
+}
+
+// Along any ray through random fields sides change from root to root, every root lies on its isovalue, and the number of roots has the parity
+// of the sides at both ends. At scales and places of all kinds.
+TEST(GridReference, RootsAreThoseOfTheField) {
+    std::mt19937_64 random(312);
+    std::uniform_real_distribution<double> unit(0, 1), both(-1, 1);
+    std::size_t met = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+        const double size = std::pow(10, 12 * both(random)), range = std::pow(10, 12 * both(random));
+        const GridAxis axis = uniform_axis(1e3 * size * both(random), size, 6);
+        // Few values, so that points, edges, faces and cells at the isovalue are common.
+        const Grid grid = grid_of({axis, axis, axis}, [&](const glm::dvec3&) { return range * (trial % 2 == 0 ? static_cast<double>(random() % 4) : unit(random)); });
+        const std::vector<IsoSurface> surfaces{{.value = range * 0.4}, {.value = range}, {.value = 2 * range}};
+        const GridReference reference = judge_of_surfaces(grid, surfaces, Shading::flat);
+        const Bounds box = grid.bounds();
+        const auto somewhere = [&] { return box.low + (box.high - box.low) * glm::dvec3(unit(random), unit(random), unit(random)); };
+        const glm::dvec3 from = somewhere(), aim = somewhere();
+        const Ray ray{from, glm::normalize(aim - from)};
+        const auto cells = cells_along(grid, ray, true);
+        const double first = scalar_along(grid, cells.front(), ray).control[0], last = scalar_along(grid, cells.back(), ray).control[3];
+        std::array<int, 3> side{}, end{};
+        for (std::size_t s = 0; s < 3; ++s) {
+            side[s] = first >= surfaces[s].value;
+            end[s] = last >= surfaces[s].value;
+        }
+        double before = 0;
+        for (const GridSurfaceHit& hit : reference.surfaces_along(ray, true)) {
+            ASSERT_GE(hit.t, before);
+            before = hit.t;
+            ASSERT_EQ(side[hit.surface], hit.rising ? 0 : 1) << trial;
+            side[hit.surface] = hit.rising ? 1 : 0;
+            const double s = interpolate(grid.corner_values(hit.cell), hit.u);
+            ASSERT_NEAR(s, surfaces[hit.surface].value, 1e-12 * range * 1e3);  // a place 1e3 sizes from 0
+            ++met;
+        }
+        ASSERT_EQ(side, end) << trial;
+    }
+    EXPECT_GT(met, 3000U);
+}
+
+// Linear in space: the same for meshes, lit as theirs. Quadratic: central differences are right inside, on any axes.
+TEST(GridReference, GradientsOfPointsAndCells) {
+    GridAxis uneven;
+    uneven.coordinates = {0, 0.1, 0.3, 0.35, 0.8, 1};
+    const auto quadratic = [](const glm::dvec3& p) { return p.x * p.x - 3 * p.y * p.y + p.x * p.z + 2 * p.z; };
+    const Grid grid = grid_of({uneven, uneven, uneven}, quadratic);
+    for (std::size_t i = 1; i < 5; ++i) {
+        const glm::dvec3 p(uneven.coordinates[i], uneven.coordinates[5 - i], uneven.coordinates[i]);
+        const glm::dvec3 wrong = point_gradient(grid, {i, 5 - i, i}) - glm::dvec3(2 * p.x + p.z, -6 * p.y, p.x + 2);
+        EXPECT_LT(glm::length(wrong), 1e-13) << i;
+    }
+    Grid linear = grid_of({uneven, uneven, uneven}, testing_support::linear);
+    const glm::dvec3 slope = point_gradient(linear, {2, 2, 2});
+    EXPECT_LT(glm::length(point_gradient(linear, {0, 5, 0}) - slope), 1e-13);
+    EXPECT_LT(glm::length(trilinear_gradient(linear.corner_values({1, 2, 3}), {0.2, 0.9, 0.5}, linear.cell_edges({1, 2, 3})) - slope), 1e-13);
+    // Beside blanked cells one-sided, and nothing where no edge is left.
+    linear.blanked.assign(linear.cell_count(), 1);
+    linear.blanked[linear.cell_id({2, 2, 2})] = 0;
+    linear.values[1] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_LT(glm::length(point_gradient(linear, {3, 2, 3}) - slope), 1e-13);
+    EXPECT_EQ(point_gradient(linear, {1, 0, 0}), glm::dvec3(0));
+}
+
+// A linear field's surfaces are those on the tetrahedra it is cut into, whatever lights them and whatever lies between.
+TEST(GridReference, SurfacesOfALinearFieldAreThoseOfTheTetrahedra) {
+    Lighting lighting;
+    lighting.lights.push_back({.towards = glm::dvec3(1, -2, 0.5), .color = {1, 0.5, 0.2}, .diffuse = 0.5, .specular = 0.6});
+    const std::vector<IsoSurface> surfaces{{.value = 0.31, .color = {1, 0.8, 0}, .opacity = 0.5}, {.value = 0.5, .color = {0, 0.2, 1}, .opacity = 0.3}, {.value = 0.77}};
+    for (const Shading shading : {Shading::flat, Shading::smooth, Shading::unlit}) {
+        const auto shared = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(surfaces), shading, lighting});
+        Scene scene = testing_support::scene_of(testing_support::grid_mesh(5), testing_support::linear, testing_support::ramp());
+        scene.surfaces = shared;
+        const GridReference reference(std::make_shared<Grid>(unit_cube(5, testing_support::linear)), scene.transfer, shared);
+        for (const auto projection : {Camera::Projection::parallel, Camera::Projection::perspective}) {
+            const Camera camera = testing_support::view_of_unit_cube(projection);
+            const ImageSize size{25, 21};
+            const std::vector<PixelTruth> of_mesh = Reference(scene).picture(camera, size);
+            const std::vector<PixelTruth> of_grid = reference.pixels(camera, size, all_pixels(size));
+            for (std::size_t p = 0; p < of_mesh.size(); ++p) {
+                ASSERT_LT(glm::length(of_mesh[p].light.color - of_grid[p].light.color), 1e-8) << p;  // normals of tiny steps
+                ASSERT_NEAR(of_mesh[p].light.opacity, of_grid[p].light.opacity, 1e-9);
+            }
+        }
+    }
 }
 
 // The picture is that of its rays, and the same at each call.

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "render/grid_plan.hpp"
 #include "tests/support/grids.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -110,23 +109,6 @@ TEST(GridTrade, TheSampleSeesTheGrid) {
     EXPECT_EQ(all.size(), 16U * 32U);  // half of a cube of 32 pixels
     ASSERT_EQ(some.size(), 100U);
     for (const PixelId pixel : some) EXPECT_TRUE(pixel.x >= 32 && pixel.x < 48 && pixel.y >= 16 && pixel.y < 48);
-}
-
-TEST(GridPlan, TellsWhatWasDrawnAndWhy) {
-    const GridScene scene = scene_of(unit_cube(8, bowl));
-    const auto chosen = [&](const GridQuality& quality, Backend backend, const std::string& rule, std::size_t culled = 0) {
-        for (const Decision& decision : grid_decisions(scene, quality, backend, culled)) {
-            EXPECT_FALSE(decision.why.empty());
-            if (decision.rule == rule) return decision.chosen + "; " + decision.why;
-        }
-        return std::string("no such rule");
-    };
-    EXPECT_EQ(chosen({}, Backend::cpu, "cells").rfind("all 512", 0), 0U);
-    EXPECT_EQ(chosen({}, Backend::cpu, "cells", 100).rfind("412 of 512; rays leap", 0), 0U);
-    EXPECT_NE(chosen({}, Backend::gl_osmesa, "order").find("exact for any eye"), std::string::npos);
-    EXPECT_NE(chosen({.method = parse_method("homogeneous:vertices")}, Backend::gl_osmesa, "sampling").find("template"), std::string::npos);
-    EXPECT_NE(chosen({.sampling = {GridSampling::Cut::view, 9, GridSampling::Light::post}}, Backend::gl_osmesa, "method").find("post-shaded"), std::string::npos);
-    EXPECT_NE(chosen({.method = parse_method("exact")}, Backend::cpu, "method").find("cubic"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/isolated_read.hpp"
+#include "mesh/io/isolated_read.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "mesh/byte_stream.hpp"
+#include "mesh/io/byte_stream.hpp"
 
 namespace cellproj {
 namespace {

@@ -24,7 +24,7 @@
 #include <vtkXMLDataSetWriter.h>
 #include <vtkXMLMultiBlockDataWriter.h>
 
-#include "mesh/merge_blocks.hpp"
+#include "mesh/io/merge_blocks.hpp"
 #include "mesh/tetrahedralize.hpp"
 #include "tests/read_fixtures.hpp"
 

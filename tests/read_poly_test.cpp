@@ -19,7 +19,7 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
-#include "mesh/planar_facet.hpp"
+#include "mesh/io/planar_facet.hpp"
 #include "mesh/surface.hpp"
 #include "tests/surface_fixtures.hpp"
 

@@ -139,23 +139,25 @@ TEST_P(SurfaceMethods, OfEveryShadingWithAndWithoutMediumAndSecondField) {
     }
 }
 
-// Cut by a box, unlit and without a medium: what is kept is told by the place of the isovalue, off by half a step of 2048 from the
-// surface that is drawn. Pixels where the box's faces cut that close to the surface differ, and no others.
+// Cut by a box, unlit and without a medium: what is kept is told by the place of the isovalue, off by half a step of the table from the
+// surface that is drawn. Pixels where the box's faces cut that close to the surface differ, and no others: fewer, the finer the table.
 TEST_P(SurfaceMethods, AreCutByClipping) {
     const Camera camera = view_of_unit_cube(GetParam(), {1.3, -2.1, 0.9});
     Scene bare = scene_of(grid_mesh(5, 0.2, 3), linear, constant_medium(0));
     bare.clip = std::make_shared<ClipRegion>(box_region({glm::dvec3(0.22), glm::dvec3(0.81)}));
+    const std::size_t texels = CELLPROJ_SANITIZED ? 512 : 2048;  // large tables are slow to make there
     for (const double opacity : {1.0, 0.4})
-        for (const char* method : {"table:2048", "combined:2048"}) {
+        for (const char* way : {"table:", "combined:"}) {
+            const std::string method = way + std::to_string(texels);
             const Scene scene = with_surfaces(bare, three(opacity), Shading::unlit);
-            const Image exact = gl().render(scene, camera, size, by("exact")), cut = gl().render(scene, camera, size, by(method));
+            const Image exact = gl().render(scene, camera, size, by("exact")), cut = gl().render(scene, camera, size, by(method.c_str()));
             std::size_t differing = 0, seen = 0;
             for (std::size_t i = 0; i < cut.pixels.size(); ++i) {
                 differing += glm::any(glm::greaterThan(glm::abs(cut.pixels[i] - exact.pixels[i]), glm::vec4(1e-3F)));
                 seen += exact.pixels[i].a > 0;
             }
             EXPECT_GT(seen, 50U);
-            EXPECT_LE(differing, seen / 50) << method << ", opacity " << opacity;
+            EXPECT_LE(differing, seen * 2048 / (50 * texels)) << method << ", opacity " << opacity;
         }
     // A constant medium, cut alike by all ways: where no surface is seen, no way shows more of it.
     bare.transfer = std::make_shared<TransferFunction>(constant_medium(2));

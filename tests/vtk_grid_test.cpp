@@ -17,7 +17,7 @@
 
 #include "mesh/error.hpp"
 #include "mesh/tetrahedralize.hpp"
-#include "mesh/vtk_conversion.hpp"
+#include "mesh/io/vtk_conversion.hpp"
 
 namespace cellproj {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "render/annotation.hpp"
+#include "render/annotation/annotation.hpp"
 #include "scene_options.hpp"
 
 namespace CLI {

@@ -23,6 +23,8 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
     if (options.cell_values == "averaged") refuse("--cell-values", "constant for a regular grid", "averaged");
     if (const std::string cuts = text_of(options.cuts); !cuts.empty())
         throw Error({ErrorKind::option, cuts, "no clipping planes and no bodies for a regular grid", "some", "leave them out, or draw the grid as tetrahedra (--as tets)"});
+    if (options.iso.any() && wishes.quality.surfaces.kind != SurfaceMethodKind::exact)
+        refuse("--iso-method", "exact for isosurfaces of a regular grid", "a table");
     if (wishes.named_order) refuse("--order", "auto for a regular grid, whose cells need no sorting", "another order");
     if (wishes.quality.check_rays > 0) refuse("--verify-order", "a mesh, whose cells are sorted", "a regular grid");
     require_grid_drawn(wishes.backend, {wishes.quality.method, wishes.quality.target, wishes.sampling}, options.iso.any());

@@ -16,7 +16,7 @@
 #include "commands.hpp"
 #include "input.hpp"
 #include "mesh/scalar_field.hpp"
-#include "mesh/surface_format.hpp"
+#include "mesh/io/surface_format.hpp"
 #include "surface_input.hpp"
 
 namespace cellproj::cli {

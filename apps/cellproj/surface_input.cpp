@@ -8,7 +8,7 @@
 
 #include "mesh/error.hpp"
 #include "mesh/scalar_field.hpp"
-#include "mesh/surface_format.hpp"
+#include "mesh/io/surface_format.hpp"
 #include "option_text.hpp"
 #include "progress.hpp"
 #include "render/statistics.hpp"

@@ -148,7 +148,7 @@ std::vector<TradeWay> tetrahedral_ways(const SceneOptions& options, const Loaded
 TradeSubject grid_subject(const SceneOptions& options, const LoadedScene& loaded, const TradeChoices& choices,
                           std::span<const Quality> qualities, const Camera& camera, ImageSize size) {
     const GridScene& scene = *loaded.grid;
-    const auto reference = std::make_shared<const GridReference>(scene.grid, scene.transfer);
+    const auto reference = std::make_shared<const GridReference>(scene.grid, scene.transfer, scene.surfaces);
     const GridDimensions n = scene.grid->dimensions();
     TradeSubject subject{{}, judge_by(*reference, camera, size),
                          "a grid of " + std::to_string(n.ni) + "x" + std::to_string(n.nj) + "x" + std::to_string(n.nk) + " points", {reference}};

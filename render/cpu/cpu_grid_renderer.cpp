@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "classify/segment_method.hpp"
 #include "render/cpu/backend_version.hpp"
@@ -18,6 +19,7 @@
 #include "render/cpu/grid_kernels.hpp"
 #include "render/cpu/grid_volume.hpp"
 #include "render/grid_plan.hpp"
+#include "render/grid_surfaces.hpp"
 
 namespace cellproj::cpu {
 
@@ -71,11 +73,14 @@ public:
 private:
     void prepare_here(const GridScene& scene, const GridQuality& quality);
     Image render_here(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality, Statistics* out);
+    void set_surfaces();
     std::size_t draw(Image& image, const ScreenTransform& transform) const;
 
     oneapi::tbb::task_arena arena_;
     GridScene scene_;
     std::optional<GridVolume> volume_;              // of scene_.grid
+    std::vector<glm::vec3> gradients_;              // at its points, where shading wants them
+    GridSurfaces surfaces_;                         // of scene_; count 0: none
     Method method_;
     std::optional<Classification> classification_;  // of method_ and scene_.transfer
     float bend_ = 0;
@@ -83,15 +88,17 @@ private:
 
 // Brings what depends on the scene and the quality up to date; usually there is nothing to do.
 void CpuGridRenderer::prepare_here(const GridScene& scene, const GridQuality& quality) {
-    const bool same_grid = volume_ && scene_.grid == scene.grid;
-    if (!same_grid) {
+    const bool same_grid = volume_ && scene_.grid == scene.grid, same_surfaces = same_grid && scene_.surfaces == scene.surfaces;
+    if (!same_grid || !same_surfaces) {
         validate(scene);
-        classification_.reset();
+        classification_.reset();  // none of another scene behind a failure
+    }
+    if (!same_grid) {
         volume_.reset();
+        gradients_.clear();
         volume_.emplace(*scene.grid);
     }
-    const bool same_transfer = same_grid && scene_.transfer == scene.transfer;
-    if (same_transfer && classification_ && method_ == quality.method) return;
+    if (same_surfaces && classification_ && scene_.transfer == scene.transfer && method_ == quality.method) return;
 
     const GridUnits& units = volume_->units();
     const TransferFunction transfer = in_scene_units(*scene.transfer, units.scalar_low, units.scalar_high, units.length);
@@ -99,10 +106,26 @@ void CpuGridRenderer::prepare_here(const GridScene& scene, const GridQuality& qu
     method_ = quality.method;
     classification_.reset();
     classification_.emplace(method_, transfer, volume_->mean_chord());
-    volume_->set_transfer(transfer);
+    volume_->set_light(transfer, has_surfaces(scene) ? kept_isovalues(scene.surfaces->isosurfaces, units) : std::vector<float>{});
+    set_surfaces();
+    surfaces_.medium = transfer.visible(0.0, 1.0);
     const double bend = method_.kind == MethodKind::exact ? bend_within(method_.tolerance, transfer)
                                                           : std::numeric_limits<double>::infinity();
     bend_ = static_cast<float>(std::min(bend, static_cast<double>(std::numeric_limits<float>::max())));
+}
+
+void CpuGridRenderer::set_surfaces() {
+    surfaces_ = volume_->surfaces();
+    if (!has_surfaces(scene_)) return;
+    const SurfaceScene& scene = *scene_.surfaces;
+    for (const SurfaceMaterial& material : materials_of(scene.isosurfaces))
+        for (const glm::vec3& color : {material.front, material.back})
+            surfaces_.materials.insert(surfaces_.materials.end(), {color.r, color.g, color.b, material.opacity});
+    surfaces_.shading = scene.shading;
+    surfaces_.lighting = kernel_lighting(scene.lighting);
+    if (scene.shading != SurfaceShading::smooth) return;
+    if (gradients_.empty()) gradients_ = kept_gradients(*scene_.grid, volume_->units());
+    surfaces_.gradients = &gradients_[0].x;
 }
 
 Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality,
@@ -128,7 +151,7 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.drawn_as = "grid";
     statistics.order = "none";  // rays meet their cells one after the other
     statistics.order_exact = true;
-    statistics.plan = grid_decisions(scene, quality, Backend::cpu, statistics.counts.culled);
+    statistics.plan = plan_of(scene, quality, {Backend::cpu, statistics.counts.cells, statistics.counts.drawn, surfaces_.medium});
     *out = std::move(statistics);
     return image;
 }
@@ -137,7 +160,7 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
 std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform) const {
     const GridCells cells = volume_->cells();
     Shading shading = classification_->shading();
-    if (!classification_->may_be_opaque()) shading.opaque = 1.0F;
+    if (!classification_->may_be_opaque() && surfaces_.count == 0) shading.opaque = 1.0F;
     const int columns = (image.width + tile_side - 1) / tile_side, rows = (image.height + tile_side - 1) / tile_side;
     std::atomic<std::size_t> segments = 0;
     oneapi::tbb::parallel_for(
@@ -148,7 +171,7 @@ std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform
                             static_cast<std::size_t>(image.width)};
             GridRays rays;
             volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, rays);
-            segments += draw_grid_tile(cells, rays, shading, bend_, tile);
+            segments += draw_grid_tile(cells, surfaces_.count > 0 ? &surfaces_ : nullptr, rays, shading, bend_, tile);
         },
         oneapi::tbb::simple_partitioner());
     return segments;

@@ -16,13 +16,18 @@
 #include "render/cpu/table_light-inl.hpp"
 #include "render/cpu/grid_segments-inl.hpp"
 #include "render/cpu/grid_walk-inl.hpp"
+#include "render/cpu/reflection-inl.hpp"
+#include "render/cpu/grid_surfaces-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace cellproj::cpu::HWY_NAMESPACE {
 
-std::size_t DrawGridTile(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
-    return !grid.axes[0].planes ? draw_grid<true>(grid, rays, shading, bend, tile)
-                                : draw_grid<false>(grid, rays, shading, bend, tile);
+std::size_t DrawGridTile(const GridCells& grid, const GridSurfaces* surfaces, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
+    const bool uniform = !grid.axes[0].planes;
+    if (surfaces)
+        return uniform ? draw_grid_surfaces<true>(grid, *surfaces, rays, shading, bend, tile)
+                       : draw_grid_surfaces<false>(grid, *surfaces, rays, shading, bend, tile);
+    return uniform ? draw_grid<true>(grid, rays, shading, bend, tile) : draw_grid<false>(grid, rays, shading, bend, tile);
 }
 
 }  // namespace cellproj::cpu::HWY_NAMESPACE
@@ -34,9 +39,11 @@ namespace cellproj::cpu {
 
 HWY_EXPORT(DrawGridTile);
 
-std::size_t draw_grid_tile(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
+std::size_t draw_grid_tile(const GridCells& grid, const GridSurfaces* surfaces, const GridRays& rays, const Shading& shading, float bend,
+                           const Tile& tile) {
     assert(tile.width <= tile_side && tile.height <= tile_side);
-    return HWY_DYNAMIC_DISPATCH(DrawGridTile)(grid, rays, shading, bend, tile);
+    assert(!surfaces || !grid.constant);
+    return HWY_DYNAMIC_DISPATCH(DrawGridTile)(grid, surfaces, rays, shading, bend, tile);
 }
 
 }  // namespace cellproj::cpu

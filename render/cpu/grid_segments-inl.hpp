@@ -115,16 +115,18 @@ HWY_INLINE void light_of_chunk(D d, const Shading& shading, bool constant, Segme
     }
 }
 
-// Puts a chunk behind what the rays have seen.
+// r, g, b, opacity of each lane behind what the rays have seen.
+template <class D>
+HWY_INLINE void put_behind(D d, const float (&light)[4][packet_lanes], PacketLight<D>& seen) {
+    seen.r = hn::MulAdd(seen.transmitted, hn::Load(d, light[0]), seen.r);
+    seen.g = hn::MulAdd(seen.transmitted, hn::Load(d, light[1]), seen.g);
+    seen.b = hn::MulAdd(seen.transmitted, hn::Load(d, light[2]), seen.b);
+    seen.transmitted = hn::NegMulAdd(seen.transmitted, hn::Load(d, light[3]), seen.transmitted);
+}
+
 template <class D>
 HWY_INLINE void composite(D d, const SegmentChunk& chunk, PacketLight<D>& seen) {
-    for (std::size_t i = 0; i < chunk.count; ++i) {
-        const auto& light = chunk.steps[i].light;
-        seen.r = hn::MulAdd(seen.transmitted, hn::Load(d, light[0]), seen.r);
-        seen.g = hn::MulAdd(seen.transmitted, hn::Load(d, light[1]), seen.g);
-        seen.b = hn::MulAdd(seen.transmitted, hn::Load(d, light[2]), seen.b);
-        seen.transmitted = hn::NegMulAdd(seen.transmitted, hn::Load(d, light[3]), seen.transmitted);
-    }
+    for (std::size_t i = 0; i < chunk.count; ++i) put_behind(d, chunk.steps[i].light, seen);
 }
 
 }  // namespace cellproj::cpu::HWY_NAMESPACE

@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
+#include "render/prepared_surfaces.hpp"
 
 namespace cellproj::cpu {
 
@@ -137,13 +138,18 @@ void GridVolume::find_ranges(const Grid& grid) {
     }
 }
 
-void GridVolume::set_transfer(const TransferFunction& transfer) {
+void GridVolume::set_light(const TransferFunction& transfer, std::vector<float> isovalues) {
+    isovalues_ = std::move(isovalues);
     const Visibility visible(transfer);
     const auto& bricks = levels_[0].bricks;
+    const auto is_crossed = [&](const Range& range) { return range.low <= range.high && level_of(isovalues_, range.low) != level_of(isovalues_, range.high); };
+    crossed_.clear();
+    if (!isovalues_.empty())
+        std::transform(levels_[0].ranges.begin(), levels_[0].ranges.end(), std::back_inserter(crossed_), [&](const Range& range) { return is_crossed(range) ? 1 : 0; });
     empty_.assign(levels_[0].ranges.size(), 0);
     empty_cells_ = 0;
     leaps_ = false;
-    const auto is_empty = [&](const Range& range) { return range.low > range.high || !visible(range.low, range.high); };
+    const auto is_empty = [&](const Range& range) { return range.low > range.high || (!visible(range.low, range.high) && !is_crossed(range)); };
     for (std::size_t z = 0; z < bricks[2]; ++z)
         for (std::size_t y = 0; y < bricks[1]; ++y)
             for (std::size_t x = 0; x < bricks[0]; ++x) {
@@ -164,6 +170,15 @@ void GridVolume::set_transfer(const TransferFunction& transfer) {
                 }
                 empty_cells_ += cells;
             }
+}
+
+GridSurfaces GridVolume::surfaces() const {
+    GridSurfaces surfaces;
+    surfaces.count = static_cast<std::int32_t>(isovalues_.size());
+    surfaces.values = isovalues_.data();
+    surfaces.crossed = crossed_.data();
+    for (std::size_t a = 0; a < 3; ++a) surfaces.per_length[a] = static_cast<float>(axes_[a].per_unit * units_.length);
+    return surfaces;
 }
 
 GridCells GridVolume::cells() const {

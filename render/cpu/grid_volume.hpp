@@ -23,8 +23,11 @@ public:
     const GridUnits& units() const { return units_; }
     double mean_chord() const { return mean_chord_; }
 
-    // `transfer` in scene units: finds the bricks in which nothing can be seen.
-    void set_transfer(const TransferFunction& transfer);
+    // `transfer` in scene units, and isovalues as kept_isovalues has them: finds the bricks in which nothing can be seen, and those that
+    // surfaces cross.
+    void set_light(const TransferFunction& transfer, std::vector<float> isovalues);
+    // Since set_light; materials, lights and gradients are not known here. No isovalues: a count of 0.
+    GridSurfaces surfaces() const;
     std::size_t empty_cells() const { return empty_cells_; }  // in them, or blanked
 
     GridCells cells() const;
@@ -54,7 +57,8 @@ private:
     std::array<std::int32_t, 3> cell_counts_, value_strides_;
     std::vector<float> values_, present_;
     std::array<Level, brick_levels> levels_;
-    std::vector<std::int32_t> empty_;
+    std::vector<float> isovalues_;
+    std::vector<std::int32_t> empty_, crossed_;  // per brick of the first level
     std::size_t empty_cells_ = 0;
     bool leaps_ = false;
 };

@@ -64,29 +64,79 @@ public:
 
     // Through the cell in which the rays are, and into the next one.
     HWY_INLINE void step(float bend, SegmentChunk& chunk) {
-        const V tx = plane_ahead(0, axes_[0].cell), ty = plane_ahead(1, axes_[1].cell), tz = plane_ahead(2, axes_[2].cell);
-        const V nearest = hn::Min(hn::Min(tx, ty), tz);
-        const M by_x = hn::Eq(nearest, tx), by_y = hn::AndNot(by_x, hn::Eq(nearest, ty));
-        const M last = hn::Ge(nearest, t_end_);
-        const V leave = hn::Max(t_, hn::IfThenElse(last, length_, nearest));
-        V length = hn::IfThenElseZero(active_, hn::Sub(leave, t_));
-        if (grid_.present) length = hn::Mul(length, hn::GatherIndex(d_, grid_.present, cell_id_));
+        const Ahead ahead = look_ahead();
         if (grid_.constant) {
             const V scalar = hn::GatherIndex(d_, grid_.values, value_id_);
-            push(scalar, scalar, length, chunk);
+            push(scalar, scalar, ahead.length, chunk);
         } else {
-            const V next = scalar_at_face(hn::Min(leave, nearest), by_x, by_y);
+            const V next = scalar_at_face<false>(ahead);
             if (bend < std::numeric_limits<float>::max()) {
-                push_parts(next, leave, length, bend, chunk);
+                push_lines(scalar_, next, polynomial_to(corners(), next, ahead.leave), ahead.length, bend, chunk);
             } else {
-                push(scalar_, next, length, chunk);
+                push(scalar_, next, ahead.length, chunk);
             }
             scalar_ = next;
         }
-        t_ = leave;
-        active_ = hn::AndNot(last, active_);
+        advance(ahead);
+    }
+
+    // Out of bricks that show nothing.
+    HWY_NOINLINE void leap() {
+        const M none = hn::Lt(t_, hn::Zero(d_));
+        M leapt = none, entered[3] = {none, none, none};  // and across which planes they came into their cells
+        for (;;) {
+            VI brick = hn::Zero(di_);
+            for (std::size_t a = 0; a < 3; ++a)
+                brick = hn::Add(brick, hn::Mul(hn::ShiftRight<2>(hn::ConvertTo(di_, axes_[a].cell)), hn::Set(di_, grid_.axes[a].brick_stride)));
+            const VI level = hn::IfThenElseZero(hn::RebindMask(di_, active_), hn::GatherIndex(di_, grid_.empty, brick));
+            const M empty = hn::RebindMask(d_, hn::Gt(level, hn::Zero(di_)));
+            if (hn::AllFalse(d_, empty)) break;
+            leapt = hn::Or(leapt, leap_out_of(empty, hn::Add(level, level), entered));
+        }
+        if (hn::AllFalse(d_, leapt)) return;
+        find_ids();
+        if (grid_.constant) return;
+        // On the plane itself: what rounding puts beside it may lie on another side of an isovalue than all that was leapt over.
+        V u[3];
+        for (std::size_t a = 0; a < 3; ++a)
+            u[a] = hn::IfThenElse(entered[a], hn::Sub(hn::Set(d_, 1.0F), axes_[a].up), fraction(a, t_));
+        scalar_ = hn::IfThenElse(leapt, interpolate(corners(), u[0], u[1], u[2]), scalar_);
+    }
+
+protected:
+    static constexpr float never = 1e30F;  // where a plane is crossed that the ray runs along
+
+    struct Axis {
+        V origin, direction, inverse;  // of the ray, axis units; inverse 0 for one that crosses no plane
+        V first;                       // uniform: where plane `up` is crossed; otherwise 0; `never` without direction
+        V up, step;                    // 1 and 1 towards higher cells, 0 and −1 towards lower ones
+        V cell;                        // a whole number
+        VI next_value, next_cell;      // from a cell's ids to those of the next one
+    };
+
+    // The way out of a cell.
+    struct Ahead {
+        V nearest, leave, length;
+        M by_x, by_y, last;  // the plane that is crossed; last: out of the grid
+    };
+    HWY_INLINE Ahead look_ahead() const {
+        const V tx = plane_ahead(0, axes_[0].cell), ty = plane_ahead(1, axes_[1].cell), tz = plane_ahead(2, axes_[2].cell);
+        Ahead ahead;
+        ahead.nearest = hn::Min(hn::Min(tx, ty), tz);
+        ahead.by_x = hn::Eq(ahead.nearest, tx);
+        ahead.by_y = hn::AndNot(ahead.by_x, hn::Eq(ahead.nearest, ty));
+        ahead.last = hn::Ge(ahead.nearest, t_end_);
+        ahead.leave = hn::Max(t_, hn::IfThenElse(ahead.last, length_, ahead.nearest));
+        ahead.length = hn::IfThenElseZero(active_, hn::Sub(ahead.leave, t_));
+        if (grid_.present) ahead.length = hn::Mul(ahead.length, hn::GatherIndex(d_, grid_.present, cell_id_));
+        return ahead;
+    }
+
+    HWY_INLINE void advance(const Ahead& ahead) {
+        t_ = ahead.leave;
+        active_ = hn::AndNot(ahead.last, active_);
         VI next_value = hn::Zero(di_), next_cell = hn::Zero(di_);
-        const M crossed[3]{by_x, by_y, hn::Not(hn::Or(by_x, by_y))};
+        const M crossed[3]{ahead.by_x, ahead.by_y, hn::Not(hn::Or(ahead.by_x, ahead.by_y))};
         for (std::size_t a = 0; a < 3; ++a) {
             Axis& axis = axes_[a];
             const M moves = hn::And(crossed[a], active_);
@@ -97,34 +147,6 @@ public:
         value_id_ = hn::Add(value_id_, next_value);
         if (grid_.present) cell_id_ = hn::Add(cell_id_, next_cell);
     }
-
-    // Out of bricks that show nothing.
-    HWY_NOINLINE void leap() {
-        M leapt = hn::Lt(t_, hn::Zero(d_));  // none
-        for (;;) {
-            VI brick = hn::Zero(di_);
-            for (std::size_t a = 0; a < 3; ++a)
-                brick = hn::Add(brick, hn::Mul(hn::ShiftRight<2>(hn::ConvertTo(di_, axes_[a].cell)), hn::Set(di_, grid_.axes[a].brick_stride)));
-            const VI level = hn::IfThenElseZero(hn::RebindMask(di_, active_), hn::GatherIndex(di_, grid_.empty, brick));
-            const M empty = hn::RebindMask(d_, hn::Gt(level, hn::Zero(di_)));
-            if (hn::AllFalse(d_, empty)) break;
-            leapt = hn::Or(leapt, leap_out_of(empty, hn::Add(level, level)));
-        }
-        if (hn::AllFalse(d_, leapt)) return;
-        find_ids();
-        if (!grid_.constant) scalar_ = hn::IfThenElse(leapt, interpolate(t_), scalar_);
-    }
-
-private:
-    static constexpr float never = 1e30F;  // where a plane is crossed that the ray runs along
-
-    struct Axis {
-        V origin, direction, inverse;  // of the ray, axis units; inverse 0 for one that crosses no plane
-        V first;                       // uniform: where plane `up` is crossed; otherwise 0; `never` without direction
-        V up, step;                    // 1 and 1 towards higher cells, 0 and −1 towards lower ones
-        V cell;                        // a whole number
-        VI next_value, next_cell;      // from a cell's ids to those of the next one
-    };
 
     // Where the ray crosses the plane ahead, at the end of these cells.
     HWY_INLINE V plane_ahead(std::size_t a, V cell) const {
@@ -170,8 +192,11 @@ private:
     HWY_INLINE V between(V low, V high, V share) const { return hn::MulAdd(hn::Sub(high, low), share, low); }
     HWY_INLINE V in_unit(V x) const { return hn::Min(hn::Max(x, hn::Zero(d_)), hn::Set(d_, 1.0F)); }
 
-    // The bilinear scalar on the face where the ray leaves.
-    HWY_INLINE V scalar_at_face(V t, M by_x, M by_y) const {
+    // The bilinear scalar on the face where the ray leaves. `bounded`: never beyond those of the face's corners.
+    template <bool bounded>
+    HWY_INLINE V scalar_at_face(const Ahead& ahead) const {
+        const M by_x = ahead.by_x, by_y = ahead.by_y;
+        const V t = hn::Min(ahead.leave, ahead.nearest);
         const V ux = fraction(0, t), uy = fraction(1, t), uz = fraction(2, t);
         const auto stride = [&](std::size_t a) HWY_ATTR { return hn::Set(di_, grid_.axes[a].value_stride); };
         const auto ix = hn::RebindMask(di_, by_x), iy = hn::RebindMask(di_, by_y);
@@ -183,9 +208,11 @@ private:
         const V u = in_unit(hn::IfThenElse(by_x, uy, ux)), v = in_unit(hn::IfThenElse(by_z, uy, uz));
         const VI corner = hn::Add(value_id_, hn::IfThenElseZero(hn::RebindMask(di_, hn::Gt(up, hn::Zero(d_))), across));
         const VI opposite = hn::Add(corner, second);
-        const V low = between(value(corner), value(hn::Add(corner, first)), u);
-        const V high = between(value(opposite), value(hn::Add(opposite, first)), u);
-        return in_unit(between(low, high, v));
+        const V c0 = value(corner), c1 = value(hn::Add(corner, first)), c2 = value(opposite), c3 = value(hn::Add(opposite, first));
+        const V scalar = between(between(c0, c1, u), between(c2, c3, u), v);
+        if constexpr (!bounded) return in_unit(scalar);
+        const V least = hn::Min(hn::Min(c0, c1), hn::Min(c2, c3)), most = hn::Max(hn::Max(c0, c1), hn::Max(c2, c3));
+        return hn::Min(hn::Max(scalar, least), most);
     }
 
     HWY_INLINE V value(VI id) const { return hn::GatherIndex(d_, grid_.values, id); }
@@ -203,53 +230,63 @@ private:
         }
         return result;
     }
-    HWY_INLINE V interpolate(const Corners& c, V t) const {
-        const V u = in_unit(fraction(0, t)), v = in_unit(fraction(1, t)), w = in_unit(fraction(2, t));
+    HWY_INLINE V interpolate(const Corners& c, V ux, V uy, V uz) const {
+        const V u = in_unit(ux), v = in_unit(uy), w = in_unit(uz);
         const V low = between(between(c.at[0], c.at[1], u), between(c.at[2], c.at[3], u), v);
         const V high = between(between(c.at[4], c.at[5], u), between(c.at[6], c.at[7], u), v);
         return in_unit(between(low, high, w));
     }
+    HWY_INLINE V interpolate(const Corners& c, V t) const { return interpolate(c, fraction(0, t), fraction(1, t), fraction(2, t)); }
     HWY_INLINE V interpolate(V t) const { return interpolate(corners(), t); }
 
-    HWY_INLINE void push(V front, V back, V length, SegmentChunk& chunk) {
+    HWY_INLINE void push(V front, V back, V length, SegmentChunk& chunk) const {
         SegmentChunk::Step& step = chunk.steps[chunk.count++];
         hn::Store(front, d_, step.front);
         hn::Store(back, d_, step.back);
         hn::Store(length, d_, step.length);
     }
 
-    // The cubic in as many equal lines as keep it within `bend`. Each has the same mean as the cubic in its part, which
-    // the chord misses by h²/12·s'' (s'' in the middle; exactly so for a cubic): where the transfer function is linear,
-    // optical depth is then exact, and a line stays within M/12 of a function whose second derivative is at most M. That
-    // of a cubic is 6 times the larger second difference of its Bézier points.
-    HWY_INLINE void push_parts(V next, V leave, V length, float bend, SegmentChunk& chunk) {
+    // The scalar from where the rays are to where they leave: its scalar there + x·(slope + x·(square + x·cube)), 0 ≤ x ≤ 1.
+    struct Polynomial {
+        V slope, square, cube;
+
+        HWY_INLINE V at(V x, V start) const { return hn::MulAdd(hn::MulAdd(hn::MulAdd(cube, x, square), x, slope), x, start); }
+    };
+    HWY_INLINE Polynomial polynomial_to(const Corners& cell, V next, V leave) const {
         const auto set = [&](float x) HWY_ATTR { return hn::Set(d_, x); };
-        const Corners cell = corners();
         const V step = hn::Mul(hn::Sub(leave, t_), set(1.0F / 3));
         const V s1 = interpolate(cell, hn::Add(t_, step)), s2 = interpolate(cell, hn::Sub(leave, step));
         // Bézier points but for the ends, and the differences 3·(b1 − b0) … of the power form.
         const V b1 = hn::MulAdd(scalar_, set(-5.0F / 6), hn::MulAdd(s1, set(3), hn::MulAdd(s2, set(-1.5F), hn::Mul(next, set(1.0F / 3)))));
         const V b2 = hn::MulAdd(scalar_, set(1.0F / 3), hn::MulAdd(s1, set(-1.5F), hn::MulAdd(s2, set(3), hn::Mul(next, set(-5.0F / 6)))));
         const V bend0 = hn::Add(hn::Sub(scalar_, hn::Add(b1, b1)), b2), bend1 = hn::Add(hn::Sub(b1, hn::Add(b2, b2)), next);
-        const V most = hn::Mul(hn::Max(hn::Abs(bend0), hn::Abs(bend1)), set(6.0F / 12));
+        return {hn::Mul(set(3), hn::Sub(b1, scalar_)), hn::Mul(set(3), bend0), hn::Sub(bend1, bend0)};
+    }
+
+    // The cubic in as many equal lines as keep it within `bend`. Each has the same mean as the cubic in its part, which
+    // the chord misses by h²/12·s'' (s'' in the middle; exactly so for a cubic): where the transfer function is linear,
+    // optical depth is then exact, and a line stays within M/12 of a function whose second derivative is at most M. That
+    // of a cubic is at one of its ends.
+    HWY_INLINE void push_lines(V start, V end, const Polynomial& p, V length, float bend, SegmentChunk& chunk) const {
+        const auto set = [&](float x) HWY_ATTR { return hn::Set(d_, x); };
+        const V last_bend = hn::MulAdd(p.cube, set(3), p.square);
+        const V most = hn::Mul(hn::Max(hn::Abs(p.square), hn::Abs(last_bend)), set(2.0F / 12));
         const V seen = hn::IfThenElseZero(hn::Gt(length, hn::Zero(d_)), most);
         const float wanted = std::ceil(std::sqrt(hn::GetLane(hn::MaxOfLanes(d_, seen)) / bend));
         const float parts = std::min(std::max(wanted, 1.0F), most_parts);
-        const V per_part = set(1.0F / parts), slope = hn::Mul(set(3), hn::Sub(b1, scalar_)), square = hn::Mul(set(3), bend0);
-        const V cube = hn::Sub(bend1, bend0), part_length = hn::Mul(length, per_part);
-        V front = scalar_;
+        const V per_part = set(1.0F / parts), part_length = hn::Mul(length, per_part);
+        V front = start;
         for (float i = 1; i <= parts; ++i) {
-            const V t = hn::Mul(set(i), per_part), middle = hn::Mul(set(i - 0.5F), per_part);
-            const V at = hn::MulAdd(hn::MulAdd(hn::MulAdd(cube, t, square), t, slope), t, scalar_);
-            const V back = i < parts ? at : next;
-            const V mean = hn::Mul(hn::MulAdd(hn::Mul(set(3), cube), middle, square), set(-1.0F / (6 * parts * parts)));
+            const V middle = hn::Mul(set(i - 0.5F), per_part);
+            const V back = i < parts ? p.at(hn::Mul(set(i), per_part), start) : end;
+            const V mean = hn::Mul(hn::MulAdd(hn::Mul(set(3), p.cube), middle, p.square), set(-1.0F / (6 * parts * parts)));
             push(in_unit(hn::Add(front, mean)), in_unit(hn::Add(back, mean)), part_length, chunk);
             front = back;
         }
     }
 
     // The lanes of `from` out of the bricks of 1 << shift cells they are in. Those that are still in the grid.
-    HWY_INLINE M leap_out_of(M from, VI shift) {
+    HWY_INLINE M leap_out_of(M from, VI shift, M (&entered)[3]) {
         V low[3], high[3], ahead[3];
         for (std::size_t a = 0; a < 3; ++a) {
             const VI first = hn::Shl(hn::Shr(hn::ConvertTo(di_, axes_[a].cell), shift), shift);
@@ -268,6 +305,7 @@ private:
             const M up = hn::Gt(axis.step, hn::Zero(d_));
             const M by = hn::And(crosses, hn::Eq(nearest, ahead[a]));
             crosses = hn::AndNot(by, crosses);
+            entered[a] = hn::Or(hn::AndNot(go, entered[a]), by);
             // Rounding must not turn a ray round: never behind the cell where it was.
             const V along = cell_at(a, hn::MulAdd(t_, axis.direction, axis.origin), hn::IfThenElse(up, axis.cell, low[a]),
                                     hn::IfThenElse(up, high[a], axis.cell));
@@ -292,16 +330,12 @@ HWY_INLINE int packet_width(D d) {
     return static_cast<int>(hn::Lanes(d) >= 8 ? 4 : hn::Lanes(d) >= 2 ? 2 : 1);
 }
 
-template <bool uniform>
-HWY_INLINE std::size_t draw_grid(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
-    using D = hn::CappedTag<float, packet_lanes>;
-    const D d;
+// Calls draw(pixel, some, seen) for each packet of a tile's rays, which fills `seen`, and keeps what it has seen as pixels.
+template <class D, class Draw>
+HWY_INLINE void for_packets(D d, const Tile& tile, Draw draw) {
     const hn::RebindToSigned<D> di;
     const auto lanes = static_cast<int>(hn::Lanes(d));
     const int columns = packet_width(d), rows = lanes / columns;
-    SegmentChunk chunk;
-    CrossingSegments crossing;
-    std::size_t segments = 0;
     for (int y = 0; y < tile.height; y += rows)
         for (int x = 0; x < tile.width; x += columns) {
             alignas(64) std::int32_t pixel[packet_lanes], inside[packet_lanes];
@@ -311,21 +345,9 @@ HWY_INLINE std::size_t draw_grid(const GridCells& grid, const GridRays& rays, co
                 pixel[lane] = inside[lane] ? tile_side * row + column : 0;
             }
             const auto some = hn::RebindMask(d, hn::Gt(hn::Load(di, inside), hn::Zero(di)));
-            GridWalk<uniform, D> walk(d, grid, rays, pixel, some);
             const auto zero = hn::Zero(d), one = hn::Set(d, 1.0F);
             PacketLight<D> seen{zero, zero, zero, one};
-            const auto hidden = hn::Set(d, 1.0F - shading.opaque);
-            while (!walk.ended()) {
-                if (grid.empty) walk.leap();
-                chunk.count = 0;
-                while (chunk.count < steps_at_once && !walk.ended()) {
-                    segments += walk.active();
-                    walk.step(bend, chunk);
-                }
-                light_of_chunk(d, shading, grid.constant, chunk, crossing);
-                composite(d, chunk, seen);
-                walk.keep(hn::Gt(seen.transmitted, hidden));
-            }
+            draw(pixel, some, seen);
             alignas(64) float rgba[4 * packet_lanes];
             hn::StoreInterleaved4(seen.r, seen.g, seen.b, hn::Sub(one, seen.transmitted), d, rgba);
             for (int lane = 0; lane < lanes; ++lane)
@@ -335,6 +357,30 @@ HWY_INLINE std::size_t draw_grid(const GridCells& grid, const GridRays& rays, co
                         light[0], light[1], light[2], light[3]};
                 }
         }
+}
+
+template <bool uniform>
+HWY_INLINE std::size_t draw_grid(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
+    using D = hn::CappedTag<float, packet_lanes>;
+    const D d;
+    SegmentChunk chunk;
+    CrossingSegments crossing;
+    std::size_t segments = 0;
+    for_packets(d, tile, [&](const std::int32_t* pixel, hn::Mask<D> some, PacketLight<D>& seen) HWY_ATTR {
+        GridWalk<uniform, D> walk(d, grid, rays, pixel, some);
+        const auto hidden = hn::Set(d, 1.0F - shading.opaque);
+        while (!walk.ended()) {
+            if (grid.empty) walk.leap();
+            chunk.count = 0;
+            while (chunk.count < steps_at_once && !walk.ended()) {
+                segments += walk.active();
+                walk.step(bend, chunk);
+            }
+            light_of_chunk(d, shading, grid.constant, chunk, crossing);
+            composite(d, chunk, seen);
+            walk.keep(hn::Gt(seen.transmitted, hidden));
+        }
+    });
     return segments;
 }
 

@@ -22,6 +22,7 @@
 #include "render/cpu/cell_planes-inl.hpp"
 #include "render/cpu/window_drawing-inl.hpp"
 #include "render/cpu/tile_drawing-inl.hpp"
+#include "render/cpu/reflection-inl.hpp"
 #include "render/cpu/surface_light-inl.hpp"
 #include "render/cpu/surface_drawing-inl.hpp"
 

@@ -18,16 +18,6 @@ namespace {
 // Products of such coordinates stay finite in float32; no pixel lies beyond.
 double bounded(double pixels) { return std::clamp(pixels, -1e12, 1e12); }
 
-SurfaceLighting for_tiles(const Lighting& lighting) {
-    SurfaceLighting result{lighting.ambient, static_cast<float>(lighting.exponent), lighting.two_sided, {}};
-    for (const DirectionalLight& light : lighting.lights) {
-        const glm::dvec3 towards = light.towards.value_or(glm::dvec3(1));
-        const double largest = std::max({std::abs(towards.x), std::abs(towards.y), std::abs(towards.z)});  // > 0
-        result.lights.push_back({!light.towards, glm::normalize(towards / largest), light.color * light.diffuse, light.color * light.specular});
-    }
-    return result;
-}
-
 // The corners' weights at a place in the tetrahedron, by volumes; those of its middle where it has none.
 std::array<double, 4> weights_at(const std::array<EyeVertex, 4>& corners, const glm::dvec3& p) {
     const auto volume = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
@@ -74,10 +64,9 @@ void ScreenMesh::set_surfaces() {
     if (!prepared) return;
     const SurfaceScene& scene = prepared->scene();
     surfaces_.values = prepared->values();
-    for (const IsoSurface& surface : scene.isosurfaces.surfaces())
-        surfaces_.materials.push_back({surface.color, surface.back_color.value_or(surface.color), static_cast<float>(surface.opacity)});
+    surfaces_.materials = materials_of(scene.isosurfaces);
     surfaces_.shading = scene.shading;
-    surfaces_.lighting = for_tiles(scene.lighting);
+    surfaces_.lighting = kernel_lighting(scene.lighting);
     surfaces_.medium = prepared_->has_medium();
     levels_.assign(prepared->levels().begin(), prepared->levels().end());
     gradients_.assign(prepared->gradients().begin(), prepared->gradients().end());

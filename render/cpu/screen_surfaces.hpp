@@ -35,6 +35,9 @@ struct SurfaceLighting {
     std::vector<Light> lights;
 };
 
+std::vector<SurfaceMaterial> materials_of(const IsoSurfaces& surfaces);  // one for each, in their order
+SurfaceLighting kernel_lighting(const Lighting& lighting);
+
 struct ScreenSurfaces {
     std::span<const float> values;              // ascending isovalues, normalized (PreparedSurfaces)
     std::vector<SurfaceMaterial> materials;     // one for each

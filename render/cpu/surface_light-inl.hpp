@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// classify/lighting.cpp for as many places on isosurfaces at once as a vector has lanes, in float32. Included once per instruction set,
-// behind Highway; private to kernels.cpp.
+// The light of places on isosurfaces (reflection-inl.hpp), gathered from the fragments of a tile. Included once per instruction set, behind
+// Highway; private to kernels.cpp.
 #if defined(CELLPROJ_SURFACE_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CELLPROJ_SURFACE_LIGHT_INL
 #undef CELLPROJ_SURFACE_LIGHT_INL
@@ -27,36 +27,6 @@ struct SurfaceHits {
     std::size_t count = 0;
 };
 
-template <class V>
-struct Direction {
-    V x, y, z;
-};
-
-template <class D>
-HWY_INLINE Direction<hn::Vec<D>> direction(D d, const glm::vec3& v) {
-    return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
-}
-
-template <class V>
-HWY_INLINE V dot(const Direction<V>& a, const Direction<V>& b) {
-    return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
-}
-
-template <class V>
-HWY_INLINE Direction<V> scaled(const Direction<V>& a, V factor) {
-    return {hn::Mul(a.x, factor), hn::Mul(a.y, factor), hn::Mul(a.z, factor)};
-}
-
-// Of unit length where `some`; relative to its largest part first, so that no square leaves float32's range.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE Direction<V> unit(D d, const Direction<V>& a, hn::Mask<D>& some) {
-    const V largest = hn::Max(hn::Abs(a.x), hn::Max(hn::Abs(a.y), hn::Abs(a.z)));
-    const V one = hn::Set(d, 1.0F);
-    some = hn::Gt(largest, hn::Set(d, 1e-37F));
-    const Direction<V> b = scaled(a, hn::Div(one, hn::IfThenElse(some, largest, one)));
-    return scaled(b, hn::Div(one, hn::Sqrt(hn::Max(dot(b, b), hn::Set(d, 1e-30F)))));
-}
-
 // From the places seen in these pixels to the eye.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Direction<V> to_eye(D d, const ScreenCells& cells, float tile_x, float tile_y, const std::int32_t* pixels) {
@@ -71,26 +41,6 @@ HWY_INLINE Direction<V> to_eye(D d, const ScreenCells& cells, float tile_x, floa
     const Direction<V> ray{hn::MulAdd(x, right.x, hn::MulAdd(y, down.x, forward.x)), hn::MulAdd(x, right.y, hn::MulAdd(y, down.y, forward.y)),
                            hn::MulAdd(x, right.z, hn::MulAdd(y, down.z, forward.z))};
     return scaled(ray, hn::Div(hn::Set(d, -1.0F), hn::Sqrt(dot(ray, ray))));  // at least as long as the axis: 1
-}
-
-// What a light adds to each channel, as shares of the surface's colour.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void add_light(D d, const SurfaceLighting::Light& light, float exponent, const Direction<V>& n, const Direction<V>& eye,
-                          V (&sum)[3]) {
-    const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-    const Direction<V> l1 = light.headlight ? eye : direction(d, light.towards);
-    const V facing = dot(n, l1);
-    hn::Mask<D> has_middle;
-    const Direction<V> l2 = unit(d, Direction<V>{hn::Add(l1.x, eye.x), hn::Add(l1.y, eye.y), hn::Add(l1.z, eye.z)}, has_middle);
-    const V cosine = hn::Min(dot(n, l2), one);
-    const auto shines = hn::And(has_middle, hn::Gt(cosine, hn::Set(d, 1e-30F)));
-    const V power = hn::Mul(hn::Log(d, hn::IfThenElse(shines, cosine, one)), hn::Set(d, exponent));
-    const V highlight = hn::IfThenElseZero(shines, hn::Exp(d, hn::Max(power, hn::Set(d, -100.0F))));
-    const auto lit = hn::Gt(facing, zero);
-    const V diffuse = hn::IfThenElseZero(lit, hn::Min(facing, one)), specular = hn::IfThenElseZero(lit, hn::Min(highlight, one));
-    for (int channel = 0; channel < 3; ++channel)
-        sum[channel] = hn::MulAdd(hn::Set(d, light.diffuse[channel]), diffuse,
-                                  hn::MulAdd(hn::Set(d, light.specular[channel]), specular, sum[channel]));
 }
 
 // The light of all hits. (tile_x, tile_y): the tile's first pixel centre.
@@ -111,12 +61,7 @@ HWY_NOINLINE void shade_hits(D d, const ScreenCells& cells, float tile_x, float 
             const Direction<V> gradient{hn::Load(d, hits.gradient[0] + begin), hn::Load(d, hits.gradient[1] + begin),
                                         hn::Load(d, hits.gradient[2] + begin)};
             const Direction<V> eye = to_eye(d, cells, tile_x, tile_y, hits.pixel + begin);
-            hn::Mask<D> some;
-            Direction<V> n = scaled(unit(d, gradient, some), hn::Set(d, -1.0F));  // the front side is that of the lower scalars
-            if (surfaces.lighting.two_sided) n = scaled(n, hn::CopySign(one, dot(n, eye)));
-            for (int channel = 0; channel < 3; ++channel) sum[channel] = hn::Set(d, surfaces.lighting.ambient[channel]);
-            for (const SurfaceLighting::Light& light : surfaces.lighting.lights) add_light(d, light, surfaces.lighting.exponent, n, eye, sum);
-            for (V& channel : sum) channel = hn::IfThenElse(some, channel, one);  // without a normal there is nothing to shade
+            reflect(d, surfaces.lighting, gradient, eye, sum);
         }
         for (int channel = 0; channel < 3; ++channel)
             sum[channel] = hn::Mul(opacity, hn::Mul(sum[channel], hn::Load(d, hits.color[channel] + begin)));

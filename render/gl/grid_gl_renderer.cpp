@@ -148,7 +148,8 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     statistics.backend_version = driver_version();
     statistics.order = cells ? "slices" : to_string(quality.sampling);
     statistics.order_exact = true;
-    statistics.plan = grid_decisions(scene, quality, Backend::gl_osmesa, statistics.counts.culled);
+    // Either OpenGL backend stands for both.
+    statistics.plan = plan_of(scene, quality, {Backend::gl_osmesa, statistics.counts.cells, statistics.counts.drawn, true});
     *out = std::move(statistics);
     return image;
 }

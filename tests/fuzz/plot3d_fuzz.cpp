@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/merge_blocks.hpp"
+#include "mesh/io/merge_blocks.hpp"
 #include "mesh/text_formats.hpp"
 #include "tests/fuzz/fuzz_reader.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "render/annotation_text.hpp"
+#include "render/annotation/text.hpp"
 #include "render/image.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/cpu/screen_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace cellproj::cpu {
+
+std::vector<SurfaceMaterial> materials_of(const IsoSurfaces& surfaces) {
+    std::vector<SurfaceMaterial> materials;
+    for (const IsoSurface& surface : surfaces.surfaces())
+        materials.push_back({surface.color, surface.back_color.value_or(surface.color), static_cast<float>(surface.opacity)});
+    return materials;
+}
+
+SurfaceLighting kernel_lighting(const Lighting& lighting) {
+    SurfaceLighting result{lighting.ambient, static_cast<float>(lighting.exponent), lighting.two_sided, {}};
+    for (const DirectionalLight& light : lighting.lights) {
+        const glm::dvec3 towards = light.towards.value_or(glm::dvec3(1));
+        const double largest = std::max({std::abs(towards.x), std::abs(towards.y), std::abs(towards.z)});  // > 0
+        result.lights.push_back({!light.towards, glm::normalize(towards / largest), light.color * light.diffuse, light.color * light.specular});
+    }
+    return result;
+}
+
+}  // namespace cellproj::cpu
