@@ -6,6 +6,7 @@
 
 #include "mesh/error.hpp"
 #include "render/gl/grid_gl_renderer.hpp"
+#include "render/hierarchy_reference.hpp"
 
 namespace cellproj {
 
@@ -20,6 +21,9 @@ int slab_count(const Grid& grid, std::size_t factor) {
     for (const GridAxis& axis : grid.axes) most = std::max(most, axis.cells());
     return static_cast<int>(std::min<std::size_t>(factor * most, 16384));
 }
+
+// Where the tolerance does not add up over a ray: half the lines.
+Method loose_lines(double max_error) { return {.kind = MethodKind::exact, .tolerance = std::clamp(max_error, 1e-9, 1e-2)}; }
 
 std::vector<GridQuality> drawn(std::vector<GridQuality> qualities, Backend backend, const GridScene& scene) {
     std::erase_if(qualities, [&](const GridQuality& quality) { return !draws_grid(backend, scene, quality); });
@@ -79,13 +83,33 @@ QualityChoice choose_grid_quality(GridRenderer& renderer, Backend backend, const
             qualities.push_back({Method{}, options.target, {Cut::object, slab_count(*scene.grid, factor)}});
     }
     for (const Method& method : choice_methods(max_error)) qualities.push_back({method, options.target, sampling});
-    // Where the tolerance does not add up over a ray: half the lines.
-    const Method loose{.kind = MethodKind::exact, .tolerance = std::clamp(max_error, 1e-9, 1e-2)};
-    qualities.insert(qualities.end() - 1, {loose, options.target, sampling});
+    qualities.insert(qualities.end() - 1, {loose_lines(max_error), options.target, sampling});
     qualities = drawn(std::move(qualities), backend, scene);
     assert(!qualities.empty());
     const GridReference reference(scene.grid, scene.transfer, scene.surfaces);
     return choose_way(ways_of(renderer, scene, camera, size, qualities), judge_by(reference, camera, size), max_error, options.how);
+}
+
+std::vector<TradeWay> ways_of(HierarchyRenderer& renderer, const HierarchyScene& scene, const Camera& camera, ImageSize size,
+                              std::span<const Method> methods) {
+    std::vector<TradeWay> ways;
+    for (const Method& method : methods) {
+        ways.push_back({.name = to_string(GridQuality{.method = method}),
+                        .quality = {.method = method},
+                        .sampling = GridSampling{},
+                        .prepare = [=, &renderer] { renderer.prepare(scene, method); },
+                        .render = [=, &renderer](Statistics* out) { return renderer.render(scene, camera, size, method, out); }});
+    }
+    return ways;
+}
+
+QualityChoice choose_hierarchy_method(HierarchyRenderer& renderer, const HierarchyScene& scene, const Camera& camera, ImageSize size,
+                                      double max_error, const ChoiceOptions& options) {
+    std::vector<Method> methods = choice_methods(max_error);
+    std::erase_if(methods, [](const Method& method) { return light_at_vertices(method); });
+    methods.insert(methods.end() - 1, loose_lines(max_error));
+    const HierarchyReference reference(scene);
+    return choose_way(ways_of(renderer, scene, camera, size, methods), judge_by(reference, camera, size), max_error, options);
 }
 
 }  // namespace cellproj

@@ -11,6 +11,7 @@
 
 #include "render/grid_reference.hpp"
 #include "render/grid_renderer.hpp"
+#include "render/hierarchy_renderer.hpp"
 #include "render/trade_choice.hpp"
 
 namespace cellproj {
@@ -40,5 +41,11 @@ struct GridChoiceOptions {
 // cells and a quarter of it. The last candidate is `exact`, which OpenGL does not draw for grids: there `integral`.
 QualityChoice choose_grid_quality(GridRenderer& renderer, Backend backend, const GridScene& scene, const Camera& camera, ImageSize size,
                                   double max_error, const GridChoiceOptions& options = {});
+
+// The same for hierarchies of grids, which the native backend alone draws.
+std::vector<TradeWay> ways_of(HierarchyRenderer& renderer, const HierarchyScene& scene, const Camera& camera, ImageSize size,
+                              std::span<const Method> methods);
+QualityChoice choose_hierarchy_method(HierarchyRenderer& renderer, const HierarchyScene& scene, const Camera& camera, ImageSize size,
+                                      double max_error, const ChoiceOptions& options = {});
 
 }  // namespace cellproj

@@ -64,4 +64,14 @@ DrawnAs choose_drawn_as(const SceneOptions& options, const PictureWishes& wishes
     return slabs ? DrawnAs::grid : options.drawn_as;
 }
 
+void require_hierarchy_drawn(Backend backend, const GridQuality& quality, bool surfaces) {
+    const auto refuse = [](const char* option, const char* expected, const std::string& found) {
+        throw Error({ErrorKind::option, option, expected, found, "leave it out, or draw the hierarchy as tetrahedra (--as tets)"});
+    };
+    if (quality.sampling.cut != GridSampling::Cut::cells) refuse("--sampling", "cells for a hierarchy of grids", to_string(quality.sampling));
+    if (backend != Backend::cpu) refuse("--backend", "cpu for a hierarchy of grids", to_string(backend));
+    if (surfaces) refuse("--iso", "no isosurfaces for a hierarchy of grids", "some");
+    require_grid_drawn(backend, quality, surfaces);
+}
+
 }  // namespace cellproj::cli

@@ -13,6 +13,7 @@
 
 #include "apps/scenes/sphere_flow.hpp"
 #include "mesh/error.hpp"
+#include "mesh/grid_pieces.hpp"
 #include "mesh/read.hpp"
 #include "progress.hpp"
 #include "render/statistics.hpp"
@@ -89,6 +90,26 @@ ReadOptions read_options(const InputOptions& options) {
     return result;
 }
 
+std::vector<InputLevel> levels_of(const Dataset& dataset) {
+    std::vector<std::array<GridAxis, 3>> axes;
+    std::vector<std::string> names;
+    for (const PieceRows& piece : dataset.pieces) {
+        axes.push_back(piece.boxes.axes);
+        names.push_back(piece.name);
+    }
+    if (axes.empty()) return {};
+    const Lattice lattice = place_pieces(axes, names, dataset.source);
+    std::vector<InputLevel> levels(static_cast<std::size_t>(lattice.levels));
+    for (std::size_t p = 0; p < axes.size(); ++p) {
+        InputLevel& level = levels[static_cast<std::size_t>(lattice.pieces[p].level)];
+        level.spacing = {*axes[p][0].spacing, *axes[p][1].spacing, *axes[p][2].spacing};
+        ++level.pieces;
+        level.cells += axes[p][0].cells() * axes[p][1].cells() * axes[p][2].cells();
+        level.visible += dataset.pieces[p].cells;
+    }
+    return levels;
+}
+
 Input load_sphere_flow() {
     Input input;
     input.name = "demo:sphere";
@@ -158,7 +179,8 @@ Input load(const InputOptions& options, DrawnAs drawn_as) {
     input.read_ms = reading.ms();
 
     input.cells = cells_in_words(dataset);
-    if (drawn_as == DrawnAs::grid || (drawn_as == DrawnAs::automatic && dataset.boxes)) {
+    input.levels = levels_of(dataset);
+    if (drawn_as == DrawnAs::grid || (drawn_as == DrawnAs::automatic && (dataset.boxes || !dataset.pieces.empty()))) {
         auto mesh = std::make_shared<TetMesh>();
         mesh->points = std::move(dataset.points);
         mesh->point_fields = std::move(dataset.point_fields);
@@ -169,6 +191,7 @@ Input load(const InputOptions& options, DrawnAs drawn_as) {
         input.regular->format = dataset.format;
         input.regular->grid = dataset.grid;
         input.regular->boxes = std::move(dataset.boxes);
+        input.regular->pieces = std::move(dataset.pieces);
     } else {
         const Stopwatch splitting;
         const Progress progress("splitting cells");

@@ -203,6 +203,32 @@ GridQuality choose_measured(GridRenderer& renderer, Backend backend, const GridS
     return {chosen.quality.method, base.target, chosen.sampling.value_or(base.sampling)};
 }
 
+// Likewise for a hierarchy of grids.
+Method choose_measured(HierarchyRenderer& renderer, const HierarchyScene& scene, const std::vector<Camera>& cameras, ImageSize size, double max_error,
+                       double& measured) {
+    const ChoiceOptions how;
+    const QualityChoice choice = [&] {
+        const Progress progress("choosing a method");
+        return choose_hierarchy_method(renderer, scene, cameras.front(), size, max_error, how);
+    }();
+    measured = tell_choice(choice, max_error, how, cameras.size(), "single precision");
+    return choice.candidates[choice.chosen].quality.method;
+}
+
+// The scene, with a hierarchy of grids as tetrahedra where the renderer of hierarchies does not know what is asked for, unless --as grid was.
+LoadedScene load(const RenderOptions& options, DrawnAs drawn_as, const GridQuality& quality, Backend backend) {
+    LoadedScene loaded = load_scene(options.scene, drawn_as);
+    if (!loaded.hierarchy) return loaded;
+    try {
+        require_hierarchy_drawn(backend, quality, options.scene.iso.any());
+        return loaded;
+    } catch (const Error&) {
+        const bool slabs = quality.sampling.cut != GridSampling::Cut::cells;
+        if (slabs || drawn_as == DrawnAs::grid) throw;
+    }
+    return load_scene(options.scene, DrawnAs::tets);
+}
+
 void render_pictures(const RenderOptions& options) {
     // Everything that can be refused without reading the mesh comes first.
     const ImageSize size = require_possible(options.scene);
@@ -224,7 +250,7 @@ void render_pictures(const RenderOptions& options) {
     const std::shared_ptr<const Font> font = require_annotated(options.annotations, options.output, size);
     if (!options.stats.empty()) require_writable(options.stats);
 
-    const LoadedScene loaded = load_scene(options.scene, drawn_as);
+    const LoadedScene loaded = load(options, drawn_as, {quality.method, quality.target, sampling}, grid_backend.backend);
     const Input& input = loaded.input;
     const Scene& scene = loaded.scene;
     const std::vector<Camera> cameras = cameras_of_pictures(options, input, size);
@@ -236,8 +262,10 @@ void render_pictures(const RenderOptions& options) {
     RunStatistics run;
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
-    const auto renderer = loaded.grid ? nullptr : make_renderer(mesh_backend.backend, {.threads = options.threads});
+    const bool as_it_is = loaded.grid || loaded.hierarchy;
+    const auto renderer = as_it_is ? nullptr : make_renderer(mesh_backend.backend, {.threads = options.threads});
     const auto grid_renderer = loaded.grid ? make_grid_renderer(grid_backend.backend, {.threads = options.threads}) : nullptr;
+    const auto hierarchy_renderer = loaded.hierarchy ? make_hierarchy_renderer(options.threads) : nullptr;
     GridQuality grid_quality{quality.method, quality.target, sampling};
     std::optional<double> error;  // of the first view
     if (options.max_error && renderer)
@@ -246,10 +274,13 @@ void render_pictures(const RenderOptions& options) {
         grid_quality = choose_measured(*grid_renderer, grid_backend.backend, *loaded.grid, views, view, *options.max_error, grid_quality,
                                        options.sampling_chosen, error.emplace());
     }
+    if (options.max_error && hierarchy_renderer)
+        quality.method = choose_measured(*hierarchy_renderer, *loaded.hierarchy, views, view, *options.max_error, error.emplace());
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
         if (loaded.grid) grid_renderer->prepare(*loaded.grid, grid_quality);
+        else if (loaded.hierarchy) hierarchy_renderer->prepare(*loaded.hierarchy, quality.method);
         else renderer->prepare(scene, quality);
     }
     run.once_ms.prepare = preparing.ms();
@@ -258,9 +289,10 @@ void render_pictures(const RenderOptions& options) {
         const Progress progress("rendering " + file.string());
         Statistics statistics;
         Image image = loaded.grid ? grid_renderer->render(*loaded.grid, views[i], view, grid_quality, &statistics)
+                      : loaded.hierarchy ? hierarchy_renderer->render(*loaded.hierarchy, views[i], view, quality.method, &statistics)
                                   : renderer->render(scene, views[i], view, quality, &statistics);
         if (i == 0) statistics.error = error;
-        statistics.plan.insert(statistics.plan.begin(), (loaded.grid ? grid_backend : mesh_backend).decision);
+        statistics.plan.insert(statistics.plan.begin(), (as_it_is ? grid_backend : mesh_backend).decision);
         const Stopwatch writing;
         std::map<std::string, std::string> text{
             {"Software", "cellproj " CELLPROJ_VERSION},

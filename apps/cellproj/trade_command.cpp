@@ -82,6 +82,14 @@ DrawnAs drawn_as(const TradeCommandOptions& options) {
     return choose_drawn_as(options.scene, {Backend::cpu, {}, {}, false});
 }
 
+// A hierarchy of grids with isosurfaces as tetrahedra: its renderer knows none.
+LoadedScene load(const TradeCommandOptions& options, DrawnAs drawn) {
+    LoadedScene loaded = load_scene(options.scene, drawn);
+    if (!loaded.hierarchy || !options.scene.iso.any()) return loaded;
+    if (drawn == DrawnAs::grid) require_hierarchy_drawn(Backend::cpu, {}, true);
+    return load_scene(options.scene, DrawnAs::tets);
+}
+
 void run_trade(const TradeCommandOptions& options) {
     const ImageSize size = require_possible(options.scene);
     const std::vector<Quality> qualities = choose_qualities(options.scene, options.choices);
@@ -89,11 +97,12 @@ void run_trade(const TradeCommandOptions& options) {
     const DrawnAs drawn = drawn_as(options);
     if (drawn == DrawnAs::tets) require_all_drawn(options.scene, options.choices, qualities);
     check_files(options);
-    const LoadedScene loaded = load_scene(options.scene, drawn);
+    const LoadedScene loaded = load(options, drawn);
+    const bool as_it_is = loaded.grid || loaded.hierarchy;
     if (!loaded.grid && slabs) {
         throw Error({ErrorKind::option, "--sampling", "a regular grid, drawn as it is", loaded.input.format, "leave it out"});
     }
-    if (!loaded.grid) require_all_drawn(options.scene, options.choices, qualities);
+    if (!as_it_is) require_all_drawn(options.scene, options.choices, qualities);
     const Scene& scene = loaded.scene;
     const Input& input = loaded.input;
     const std::vector<Camera> cameras = choose_cameras(options.scene, input, size, false);
@@ -102,6 +111,7 @@ void run_trade(const TradeCommandOptions& options) {
     }
     const Camera& camera = cameras.front();
     const TradeSubject subject = loaded.grid ? grid_subject(options.scene, loaded, options.choices, qualities, camera, size)
+                                 : loaded.hierarchy ? hierarchy_subject(options.scene, loaded, options.choices, qualities, camera, size)
                                              : mesh_subject(loaded, options.choices, qualities, camera, size);
     const Truths judged = find_truths(options, subject.judge, size);
     std::vector<TradeRow> rows = [&] {

@@ -5,8 +5,10 @@
 #include <map>
 #include <utility>
 
+#include "grid_options.hpp"
 #include "mesh/error.hpp"
 #include "render/grid_trade.hpp"
+#include "render/hierarchy_reference.hpp"
 
 namespace cellproj::cli {
 
@@ -170,6 +172,26 @@ TradeSubject grid_subject(const SceneOptions& options, const LoadedScene& loaded
     }
     if (choices.samplings.empty())
         add(subject.ways, tetrahedral_ways(options, loaded, choices, choices.is_empty() ? std::span<const Quality>() : qualities, camera, size, subject));
+    return subject;
+}
+
+TradeSubject hierarchy_subject(const SceneOptions& options, const LoadedScene& loaded, const TradeChoices& choices,
+                               std::span<const Quality> qualities, const Camera& camera, ImageSize size) {
+    const HierarchyScene& scene = *loaded.hierarchy;
+    const auto reference = std::make_shared<const HierarchyReference>(scene);
+    const std::shared_ptr<HierarchyRenderer> renderer = make_hierarchy_renderer();
+    std::vector<Method> methods;
+    if (choices.is_empty()) {
+        for (const char* method : {"average", "homogeneous", "preint2d-exp:256", "integral", "exact:1e-3", "exact:1e-5"}) methods.push_back(parse_method(method));
+    } else {
+        for (const GridQuality& quality : chosen_qualities(choices, qualities)) {
+            require_hierarchy_drawn(choices.wish == BackendWish::automatic ? Backend::cpu : grid_backends(choices).back(), quality, options.iso.any());
+            methods.push_back(quality.method);
+        }
+    }
+    TradeSubject subject{ways_of(*renderer, scene, camera, size, methods), judge_by(*reference, camera, size),
+                         "a hierarchy of grids, " + std::to_string(scene.hierarchy->visible_cells()) + " cells", {reference, renderer}};
+    add(subject.ways, tetrahedral_ways(options, loaded, choices, choices.is_empty() ? std::span<const Quality>() : qualities, camera, size, subject));
     return subject;
 }
 

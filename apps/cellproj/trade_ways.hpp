@@ -46,4 +46,8 @@ TradeSubject mesh_subject(const LoadedScene& loaded, const TradeChoices& choices
 TradeSubject grid_subject(const SceneOptions& options, const LoadedScene& loaded, const TradeChoices& choices,
                           std::span<const Quality> qualities, const Camera& camera, ImageSize size);
 
+// A hierarchy of grids by rays, and cut into tetrahedra.
+TradeSubject hierarchy_subject(const SceneOptions& options, const LoadedScene& loaded, const TradeChoices& choices,
+                               std::span<const Quality> qualities, const Camera& camera, ImageSize size);
+
 }  // namespace cellproj::cli
