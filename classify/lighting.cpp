@@ -59,4 +59,11 @@ glm::dvec3 shade(const Lighting& lighting, const glm::dvec3& color, const glm::d
     return sum * color;
 }
 
+glm::dvec3 lit_share(const Lighting& lighting, const glm::dvec3& gradient, const glm::dvec3& to_eye) {
+    const double size = std::hypot(gradient.x, gradient.y, gradient.z);
+    if (!(size > 0)) return glm::dvec3(1);
+    const double weight = 1.0 / (1.0 + 1.0 / size / size);
+    return 1.0 + weight * (shade(lighting, glm::dvec3(1), -gradient, to_eye) - 1.0);
+}
+
 }  // namespace cellproj

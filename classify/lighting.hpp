@@ -41,4 +41,16 @@ void validate(const Lighting& lighting, const std::string& place);
 // of any length > 0. Independent of the lengths of all three directions.
 glm::dvec3 shade(const Lighting& lighting, const glm::dvec3& color, const glm::dvec3& normal, const glm::dvec3& to_eye);
 
+// The gradient below which a medium has no direction to be lit from [field's range over half the diagonal of the mesh]: a change of a
+// thousandth across the scene, far above the rounding of data in float32 and of interpolation.
+inline constexpr double weak_gradient = 1e-3;
+
+// What a place in a medium sends to the eye of the light that its colour gives, by channel (EKE01 §5.4, RS00 §8): `shade` of a white surface
+// whose normal is the gradient's, pointing to lower scalars, where there is a gradient:
+//
+//   1 + w (shade − 1),   w = g² / (g² + g₀²)
+//
+// `gradient`: over g₀ = weak_gradient. So it has no jumps, goes to 1 where the scalar is constant, and does not light noise.
+glm::dvec3 lit_share(const Lighting& lighting, const glm::dvec3& gradient, const glm::dvec3& to_eye);
+
 }  // namespace cellproj

@@ -392,14 +392,21 @@ public:
         const AffineMap<double> scalar = make_scalar_map(places_before, scalars);
         vertex_.maps[0].scalar = static_cast<float>(scalar.value);
         for (std::size_t slope = 0; slope < 3; ++slope) vertex_.maps[slope + 1].scalar = static_cast<float>(scalar.slopes[slope]);
-        if (first == last) return;
+        if (first == last && !stream.prepared_.lights_medium()) return;
         // Of a piece of a cell, the cell's corners may lie where nothing is on the screen.
         const auto places = corners.whole ? places_of(corners, 0.0, frame) : places_of(cell, frame);
-        const AffineMap<glm::dvec3> gradient = make_gradient_map(places, gradients(surfaces, cell));
+        const std::array<glm::dvec3, 4> corner_gradients = gradients(surfaces, cell);
+        const AffineMap<glm::dvec3> gradient = make_gradient_map(places, corner_gradients);
+        // Surfaces ask for directions alone, a medium that is lit for lengths, too.
+        double size = 1.0;
+        if (stream.prepared_.lights_medium()) {
+            size = 0.0;
+            for (const glm::dvec3& g : corner_gradients) size = std::max({size, std::abs(g.x), std::abs(g.y), std::abs(g.z)});
+        }
         for (int axis = 0; axis < 3; ++axis) {
-            vertex_.maps[0].gradient[axis] = static_cast<float>(gradient.value[axis]);
+            vertex_.maps[0].gradient[axis] = static_cast<float>(size * gradient.value[axis]);
             for (std::size_t slope = 0; slope < 3; ++slope)
-                vertex_.maps[slope + 1].gradient[axis] = static_cast<float>(gradient.slopes[slope][axis]);
+                vertex_.maps[slope + 1].gradient[axis] = static_cast<float>(size * gradient.slopes[slope][axis]);
         }
     }
 

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "render/plan.hpp"
+
 namespace cellproj {
 
 namespace {
@@ -49,7 +51,8 @@ Decision gradients(const GridScene& scene) {
 }  // namespace
 
 std::vector<Decision> plan_of(const GridScene& scene, const GridQuality& quality, const GridFacts& facts) {
-    return {cells(quality, facts), order(quality, facts), segments(scene, quality, facts), surfaces(scene, quality), gradients(scene)};
+    return {cells(quality, facts), order(quality, facts), segments(scene, quality, facts), surfaces(scene, quality), gradients(scene),
+            decide_rays(ray_cuts(scene))};
 }
 
 }  // namespace cellproj

@@ -18,7 +18,7 @@ struct GridFacts {
     bool medium;               // whether there is light between surfaces
 };
 
-// Cells, order, segments, surfaces and gradients.
+// Cells, order, segments, surfaces, gradients and rays.
 std::vector<Decision> plan_of(const GridScene& scene, const GridQuality& quality, const GridFacts& facts);
 
 }  // namespace cellproj

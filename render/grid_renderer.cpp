@@ -25,6 +25,15 @@ void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfac
         refuse("--method", "a method of light per pixel, blended once, for isosurfaces", to_string(quality.method), "leave it out");
 }
 
+void require_grid_cut(const GridQuality& quality, const RayCuts& cuts) {
+    if (!cuts.any()) return;
+    const auto refuse = [&](const char* option, const char* expected, const std::string& found, const char* advice) {
+        throw Error({ErrorKind::option, option, std::string(expected) + " for a regular grid with " + describe(cuts), found, advice});
+    };
+    if (quality.sampling.cut != GridSampling::Cut::cells) refuse("--sampling", "cells", to_string(quality.sampling), "leave it out");
+    if (light_at_vertices(quality.method)) refuse("--method", "a method of light per pixel", to_string(quality.method), "use integral");
+}
+
 std::unique_ptr<GridRenderer> make_grid_renderer(Backend backend, const RendererOptions& options) {
     switch (backend) {
         case Backend::gl_osmesa:

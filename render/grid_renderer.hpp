@@ -42,6 +42,9 @@ public:
 // Throws Error (option), which says what to do instead, when a backend does not draw grids so; renderers do it, too.
 void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfaces);
 
+// Likewise for grids whose rays are cut: only the light of a piece of a ray through a cell can be, not that of slabs or at vertices.
+void require_grid_cut(const GridQuality& quality, const RayCuts& cuts);
+
 // Throws Error (environment) when the backend is not available here.
 std::unique_ptr<GridRenderer> make_grid_renderer(Backend backend, const RendererOptions& options = {});
 

@@ -8,6 +8,7 @@
 
 #include "classify/transfer_function.hpp"
 #include "mesh/grid.hpp"
+#include "render/ray_cuts.hpp"
 #include "render/surface_scene.hpp"
 
 namespace cellproj {
@@ -17,12 +18,17 @@ struct GridScene {
     std::shared_ptr<const Grid> grid;
     std::shared_ptr<const TransferFunction> transfer;
     std::shared_ptr<const SurfaceScene> surfaces = nullptr;  // null: none; they lie in the medium of `transfer`
+    std::shared_ptr<const ClipRegion> clip = nullptr;     // as of a mesh (scene.hpp)
+    std::shared_ptr<const BodyScene> bodies = nullptr;
+    std::shared_ptr<const SliceScene> slices = nullptr;   // without cuts
 };
 
 bool has_surfaces(const GridScene& scene);
+RayCuts ray_cuts(const GridScene& scene);
 
 // Throws Error (data) when the grid is not sound (mesh/grid.hpp) or all its cells are blanked, Error (option) for
-// isosurfaces of a field on cells, which has none, and for lights out of range.
+// isosurfaces of a field on cells, which has none, for lights out of range and for clip regions, bodies and slices as
+// their own `validate`.
 void validate(const GridScene& scene);
 
 // What a renderer counts in, so that float32 serves grids and fields of any scale: as SceneUnits of a mesh

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "mesh/error.hpp"
-#include "render/depth_window.hpp"
 #include "render/prepared_scene.hpp"
 #include "render/scene_view.hpp"
 
@@ -112,19 +111,25 @@ Decision decide_field(const SceneFacts& facts) {
 }
 
 Decision decide_gradients(const SceneFacts& facts) {
-    if (!facts.surfaces) return {"gradients", "none", "nothing is lit"};
-    switch (facts.surfaces->shading) {
+    if (!facts.surfaces && !facts.lit_medium) return {"gradients", "none", "nothing is lit"};
+    const std::string of_medium = facts.lit_medium ? "; the medium is lit by them" : "";
+    switch (facts.lit_medium ? *facts.lit_medium : facts.surfaces->shading) {
         case Shading::unlit:
             return {"gradients", "none", "isosurfaces are unlit"};
         case Shading::flat:
-            return {"gradients", "one for a cell", "flat shading needs none at points"};
+            return {"gradients", "one for a cell", "flat shading needs none at points" + of_medium};
         case Shading::smooth:
             break;
     }
-    return {"gradients", "at points", "smooth shading interpolates them"};
+    return {"gradients", "at points", "smooth shading interpolates them" + of_medium};
 }
 
 }  // namespace
+
+Decision decide_rays(const RayCuts& cuts) {
+    if (!cuts.any()) return {"rays", "whole", "nothing is clipped, and there are no bodies and no slices"};
+    return {"rays", "cut", describe(cuts) + ": a part of each ray is left"};
+}
 
 Plan plan_scene(const SceneFacts& facts, const Quality& quality, Backend backend, const PlanRules& rules) {
     Plan result;
@@ -139,7 +144,7 @@ Plan plan_scene(const SceneFacts& facts, const Quality& quality, Backend backend
     return result;
 }
 
-Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSize size, bool cut, const PlanRules& rules) {
+Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSize size, const RayCuts& cuts, const PlanRules& rules) {
     if (camera.projection == Camera::Projection::parallel) {
         plan.decisions.push_back({"projection", "parallel", "depth and scalar are affine on the screen: no division at a pixel"});
     } else {
@@ -157,8 +162,12 @@ Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSi
     } else {
         plan.decisions.push_back({"view", "what the view holds", "the mesh's box reaches into it"});
     }
-    plan.decisions.push_back(cut ? Decision{"rays", "cut", "at clipping planes and bodies, a part of each ray"}
-                                 : Decision{"rays", "whole", "nothing is clipped, and there are no bodies"});
+    if (plan.drawing == Drawing::nothing && cuts.opaque()) {
+        const auto order = std::ranges::find(plan.decisions, "order", &Decision::rule);
+        order->chosen = "none: " + describe(cuts, true) + " alone";
+        order->why += "; the nearest one of each pixel is seen";
+    }
+    plan.decisions.push_back(decide_rays(cuts));
     return plan;
 }
 
@@ -167,7 +176,7 @@ Plan plan(const Scene& scene, const Camera& camera, ImageSize size, const Qualit
     validate(size, "size");
     require_drawn(backend, quality, fields_read(scene));
     const SceneFacts facts = PreparedScene(scene).facts();
-    return plan_view(plan_scene(facts, quality, backend), facts, camera, size, DepthWindow::is_needed(scene));
+    return plan_view(plan_scene(facts, quality, backend), facts, camera, size, ray_cuts(scene));
 }
 
 double expected_fragments(const SceneFacts& facts, std::size_t cells, const Camera& camera, ImageSize size) {

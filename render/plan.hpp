@@ -41,6 +41,7 @@ struct SceneFacts {
         Shading shading = Shading::unlit;
     };
     std::optional<Surfaces> surfaces = {};
+    std::optional<Shading> lit_medium = {};  // how, where a medium is seen and lit: flat or smooth
 
     // Whether any picture shows anything.
     bool seen() const { return medium > 0 || (surfaces && surfaces->crossed > 0); }
@@ -48,7 +49,7 @@ struct SceneFacts {
 
 struct Plan {
     enum class Drawing {
-        nothing,           // an empty picture, but for bodies
+        nothing,           // an empty picture, but for bodies and slices
         nearest_surfaces,  // cells with isosurfaces in any order; the nearest surface of each pixel is seen
         sum,               // cells in any order; their light adds up
         by_pixels,         // each pixel sorts what its ray meets
@@ -66,8 +67,11 @@ struct Plan {
 
 // For all views of a scene. The quality is one that the backend draws.
 Plan plan_scene(const SceneFacts& facts, const Quality& quality, Backend backend, const PlanRules& rules = {});
-// The same for one view of it. `cut`: rays are cut by clipping planes or bodies.
-Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSize size, bool cut, const PlanRules& rules = {});
+// The same for one view of it.
+Plan plan_view(Plan plan, const SceneFacts& facts, const Camera& camera, ImageSize size, const RayCuts& cuts, const PlanRules& rules = {});
+
+// What of the rays is left, for meshes and grids.
+Decision decide_rays(const RayCuts& cuts);
 
 // All of it, from the scene itself. Throws Error as `Renderer::render` does.
 Plan plan(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Backend backend);

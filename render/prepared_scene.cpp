@@ -178,7 +178,7 @@ PreparedScene::PreparedScene(Scene scene, const SurfaceSides& sides, const PlanR
     facts_.location = scene_.field->location;
     facts_.fields = fields_read(scene_);
     for (std::size_t cell = 0; cell < bins_.size(); ++cell) facts_.not_finite += !finite(cell);
-    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, sides);
+    if (has_surface_scene(scene_)) surfaces_.emplace(scene_, units_, sides);
     find_visible_cells();
 }
 
@@ -214,8 +214,10 @@ void PreparedScene::find_facts() {
             const glm::dvec3 &a = node.color, &b = color.front().color;
             return alike(a.x, b.x) && alike(a.y, b.y) && alike(a.z, b.z);
         });
+    facts_.lit_medium.reset();
+    if (has_lit_medium(scene_) && has_medium()) facts_.lit_medium = scene_.surfaces->shading;
     facts_.surfaces.reset();
-    if (!surfaces_) return;
+    if (!has_surfaces(scene_)) return;
     facts_.surfaces = {surfaces_->values().size(), surfaces_->crossed().size(), surfaces_->scene().isosurfaces.opaque(), surfaces_->jump(),
                        surfaces_->scene().shading};
 }
@@ -248,7 +250,7 @@ void PreparedScene::set_surfaces(std::shared_ptr<const SurfaceScene> surfaces, c
     validate(changed);
     const std::optional<PreparedSurfaces> before = std::exchange(surfaces_, std::nullopt);
     scene_ = std::move(changed);
-    if (has_surfaces(scene_)) surfaces_.emplace(scene_, units_, sides, before ? &*before : nullptr);
+    if (has_surface_scene(scene_)) surfaces_.emplace(scene_, units_, sides, before ? &*before : nullptr);
     find_visible_cells();
 }
 
@@ -258,16 +260,17 @@ ViewOrder PreparedScene::order(const Camera& camera, ImageSize size, std::option
 }
 
 void PreparedScene::judge(const ViewOrder& order, const OrderReport& report, const Camera& camera, ImageSize size,
-                          std::size_t check_rays, Statistics& statistics) {
+                          const Quality& quality, Statistics& statistics) {
     statistics.order = to_string(report.method);
     statistics.order_exact = report.exact;
     statistics.counts.unordered = report.unordered;
     statistics.counts.cycles = report.cycles;
     statistics.counts.split_cells = report.split_cells;
-    statistics.counts.order_violations = sorter().count_violations(order, camera.viewpoint());
-    if (check_rays == 0) return;
+    statistics.counts.order_violations.reset();
+    if (quality.check_neighbours) statistics.counts.order_violations = sorter().count_violations(order, camera.viewpoint());
+    if (quality.check_rays == 0) return;
     if (!ray_index_) ray_index_ = std::make_unique<const RayIndex>(*scene_.mesh);
-    statistics.order_check = check_order(*ray_index_, visible_.size(), order, camera, size, check_rays);
+    statistics.order_check = check_order(*ray_index_, visible_.size(), order, camera, size, quality.check_rays);
 }
 
 }  // namespace cellproj

@@ -13,6 +13,7 @@
 #include "render/plan.hpp"
 #include "render/prepared_surfaces.hpp"
 #include "render/ray_index.hpp"
+#include "render/renderer.hpp"
 #include "render/scene.hpp"
 #include "render/statistics.hpp"
 #include "sort/visibility_sorter.hpp"
@@ -49,8 +50,8 @@ public:
     VisibilitySorter& sorter();
     // The order of the visible cells for a picture; valid until the next one. `method`: nothing for one that is exact for this mesh.
     ViewOrder order(const Camera& camera, ImageSize size, std::optional<OrderMethod> method, OrderReport* report);
-    // What an order is worth, into the statistics: the report, violated relations and, for `check_rays` > 0, the judge on as many pixels.
-    void judge(const ViewOrder& order, const OrderReport& report, const Camera& camera, ImageSize size, std::size_t check_rays,
+    // What an order is worth, into the statistics: the report and, as the quality asks, violated relations and the judge on some pixels.
+    void judge(const ViewOrder& order, const OrderReport& report, const Camera& camera, ImageSize size, const Quality& quality,
                Statistics& statistics);
     // Mean length of a segment over all cells and directions, 4·volume / surface by Cauchy's formula [SceneUnits::length],
     // > 0. Found when it is asked for first.
@@ -62,10 +63,11 @@ public:
     const std::vector<std::uint8_t>& visible() const { return visible_; }
     // The visible cells as they lie in memory, for pictures that need no order. Valid until the scene changes.
     ViewOrder any_order();
-    // Null for scenes that have none.
+    // Null for scenes that have none, and whose medium is not lit.
     const PreparedSurfaces* surfaces() const { return surfaces_ ? &*surfaces_ : nullptr; }
     // Whether anything but isosurfaces can be seen.
     bool has_medium() const { return facts_.medium > 0; }
+    bool lights_medium() const { return facts_.lit_medium.has_value(); }
 
     // Another transfer function over the same mesh and field: only the visibility is found anew, for most cells from bins
     // of the field's range.

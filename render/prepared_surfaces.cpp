@@ -86,14 +86,29 @@ double jump_in(const TetMesh& mesh, const ScalarField& field, const SceneUnits& 
     return std::abs(jump);
 }
 
+std::vector<VertexId> points_of(const TetMesh& mesh, std::span<const CellId> cells) {
+    std::vector<std::uint8_t> some(cells.empty() ? 0 : mesh.points.size());
+    for (const CellId cell : cells)
+        for (const VertexId v : mesh.tets[cell]) some[v] = 1;
+    std::vector<VertexId> points;
+    for (VertexId v = 0; v < some.size(); ++v)
+        if (some[v]) points.push_back(v);
+    return points;
+}
+
 double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-std::vector<glm::vec3> over_the_steepest(const std::vector<glm::dvec3>& gradients) {
-    double steepest = 0;
-    for (const glm::dvec3& g : gradients) steepest = std::max(steepest, largest(g));
+// Squares and sums of what is left, those of slivers as well, are finite in float32.
+std::vector<glm::vec3> over_weak_ones(const std::vector<glm::dvec3>& gradients, const SceneUnits& units) {
+    constexpr double longest = 1e15;
+    const double range = units.scalar_high - units.scalar_low;
     std::vector<glm::vec3> result(gradients.size(), glm::vec3(0));
-    if (!(steepest > 0)) return result;
-    std::transform(gradients.begin(), gradients.end(), result.begin(), [&](const glm::dvec3& g) { return glm::vec3(g / steepest); });
+    if (!(range > 0)) return result;
+    std::transform(gradients.begin(), gradients.end(), result.begin(), [&](const glm::dvec3& g) {
+        const glm::dvec3 relative = g / range * units.length / weak_gradient;
+        const double size = largest(relative);
+        return glm::vec3(size > longest ? longest / size * relative : relative);
+    });
     return result;
 }
 
@@ -101,7 +116,7 @@ std::vector<glm::vec3> over_the_steepest(const std::vector<glm::dvec3>& gradient
 
 PreparedSurfaces::PreparedSurfaces(const Scene& scene, const SceneUnits& units, const SurfaceSides& sides, const PreparedSurfaces* before)
     : scene_(scene.surfaces.get()), sides_(sides) {
-    assert(has_surfaces(scene) && scene.field->location == FieldLocation::points);
+    assert(has_surface_scene(scene) && scene.field->location == FieldLocation::points);
     for (const IsoSurface& surface : scene_->isosurfaces.surfaces()) {
         values_.push_back(normalized(units, surface.value));
         thresholds_.push_back(threshold_of(units, surface.value, sides));
@@ -109,19 +124,20 @@ PreparedSurfaces::PreparedSurfaces(const Scene& scene, const SceneUnits& units, 
     levels_ = find_levels(*scene.mesh, *scene.field, units, thresholds_);
     for (CellId cell = 0; cell < levels_.size(); ++cell)
         if (levels_[cell] == crossed_cell) crossed_.push_back(cell);
-    of_field_ = before && before->of_field_->shading == scene_->shading ? before->of_field_ : find_gradients(scene);
+    crossed_points_ = points_of(*scene.mesh, crossed_);
+    of_field_ = before && before->of_field_->shading == scene_->shading ? before->of_field_ : find_gradients(scene, units);
     find_jumps(scene, units);
 }
 
-std::shared_ptr<const PreparedSurfaces::OfField> PreparedSurfaces::find_gradients(const Scene& scene) {
+std::shared_ptr<const PreparedSurfaces::OfField> PreparedSurfaces::find_gradients(const Scene& scene, const SceneUnits& units) {
     const TetMesh& mesh = *scene.mesh;
     OfField found{.shading = scene.surfaces->shading, .gradients = {}, .flat_cells = {}};
     const Gradients of_cells = cell_gradients(mesh, *scene.field);
     // A flat cell has the gradient 0, and so have others.
     for (CellId cell = 0; of_cells.undefined > 0 && cell < mesh.tets.size(); ++cell)
         if (of_cells.values[cell] == glm::dvec3(0) && is_flat(mesh, cell)) found.flat_cells.push_back(cell);
-    if (found.shading == Shading::flat) found.gradients = over_the_steepest(of_cells.values);
-    if (found.shading == Shading::smooth) found.gradients = over_the_steepest(vertex_gradients(mesh, *scene.field).values);
+    if (found.shading == Shading::flat) found.gradients = over_weak_ones(of_cells.values, units);
+    if (found.shading == Shading::smooth) found.gradients = over_weak_ones(vertex_gradients(mesh, *scene.field).values, units);
     return std::make_shared<const OfField>(std::move(found));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What backends need of isosurfaces and no view changes: on which side of which surfaces every cell lies, and the gradients that
+// What backends need of isosurfaces, and of a medium that is lit, and no view changes: on which side of which surfaces every cell lies, and the gradients that
 // shading takes for normals.
 //
 // This is the one place that says which cells an isovalue crosses. Sides are told by the scalars that are drawn, normalized to the
@@ -48,7 +48,7 @@ class PreparedSurfaces {
 public:
     static constexpr std::int32_t crossed_cell = -1, no_scalar = -2;
 
-    // Of a scene that has_surfaces; the scene's field must outlive it. `before`: of the same mesh and field, whose gradients serve again;
+    // Of a scene that has_surface_scene; the scene's field must outlive it. `before`: of the same mesh and field, whose gradients serve again;
     // or null.
     PreparedSurfaces(const Scene& scene, const SceneUnits& units, const SurfaceSides& sides = {}, const PreparedSurfaces* before = nullptr);
 
@@ -62,13 +62,14 @@ public:
     // #T: the level of all scalars of the cell, crossed_cell where its points have several, no_scalar where one is not finite.
     std::span<const std::int32_t> levels() const { return levels_; }
     std::span<const CellId> crossed() const { return crossed_; }  // ascending
+    std::span<const VertexId> crossed_points() const { return crossed_points_; }  // theirs, ascending
 
     // Rays pass a flat cell with no length. Where its scalars lie in no one plane, they jump there from one neighbour to the other, and
     // surfaces lie in the jump. If there are such cells: all that are not crossed and touch a flat cell, so that it can be seen.
     std::span<const CellId> beside_jumps() const { return beside_jumps_; }
     bool jump() const { return jump_; }
 
-    // In the axes of the mesh, over the steepest: #T (flat), #P (smooth) or none (unlit). 0 where there is none.
+    // In the axes of the mesh, over classify's weak_gradient, shortened to 1e15: #T (flat), #P (smooth) or none (unlit). 0 where there is none.
     std::span<const glm::vec3> gradients() const { return of_field_->gradients; }
 
 private:
@@ -79,7 +80,7 @@ private:
         std::vector<CellId> flat_cells;
     };
 
-    static std::shared_ptr<const OfField> find_gradients(const Scene& scene);
+    static std::shared_ptr<const OfField> find_gradients(const Scene& scene, const SceneUnits& units);
     void find_jumps(const Scene& scene, const SceneUnits& units);
 
     const SurfaceScene* scene_;
@@ -87,6 +88,7 @@ private:
     std::vector<float> values_, thresholds_;
     std::vector<std::int32_t> levels_;
     std::vector<CellId> crossed_;
+    std::vector<VertexId> crossed_points_;
     std::vector<CellId> beside_jumps_;
     bool jump_ = false;
     std::shared_ptr<const OfField> of_field_;

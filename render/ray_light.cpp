@@ -17,25 +17,25 @@ namespace {
 constexpr std::array<GaussPair, 2> four_points{
     {{0.16999052179242813, 0.32607257743127307}, {0.43056815579702629, 0.17392742256872693}}};
 
-// e^(−D) times a quadratic, relative error: D⁷/7! · 4e-10 for eight points, D³/3! · 2e-5 for four (the remainder f⁽²ⁿ⁾ of the
+// e^(−D) times a cubic, relative error: D⁷/7! · 4e-10 for eight points, D³/3! · 2e-5 for four (the remainder f⁽²ⁿ⁾ of the
 // first power of D that the rule does not integrate exactly; D itself is quadratic). 5e-16 and 2e-13.
 constexpr double eight_points_depth = 0.5, four_points_depth = 1.0 / 256;
 
-struct Weights {
-    double front = 0, middle = 0, back = 0;
-};
+using Weights = std::array<double, 4>;
 
-// ∫₀¹ Bᵢ(x) e^(−D(x)) dx for the three Bernstein polynomials of degree 2.
+// ∫₀¹ Bᵢ(x) e^(−D(x)) dx for the four Bernstein polynomials of degree 3.
 template <std::size_t N>
 Weights bernstein_weights(double length, const double (&extinction)[2], const std::array<GaussPair, N>& rule) {
-    Weights sum;
+    Weights sum{};
     for (const GaussPair& pair : rule) {
         for (const double x : {0.5 - pair.offset, 0.5 + pair.offset}) {
             const double depth = length * x * (extinction[0] * (1.0 - 0.5 * x) + extinction[1] * 0.5 * x);
             const double light = pair.weight * std::exp(-depth);
-            sum.front += light * (1.0 - x) * (1.0 - x);
-            sum.middle += light * 2.0 * x * (1.0 - x);
-            sum.back += light * x * x;
+            const double y = 1.0 - x;
+            sum[0] += light * y * y * y;
+            sum[1] += light * 3.0 * x * y * y;
+            sum[2] += light * 3.0 * x * x * y;
+            sum[3] += light * x * x * x;
         }
     }
     return sum;
@@ -92,22 +92,22 @@ RayLight::Walk::Step RayLight::Walk::advance(double share) {
 }
 
 // One more medium on a stretch.
-void RayLight::superpose(const glm::dvec3 (&color)[2], const double (&tau)[2], Stretch& sum) const {
+void RayLight::superpose(const glm::dvec3 (&color)[2], const double (&tau)[2], const ShareEnds& shares, Stretch& sum) const {
     for (int side : {0, 1})
         sum.extinction[side] += tau[side];
-    if (transfer_->model() == OpticalModel::density) {
-        sum.emission[0] += color[0] * tau[0];
-        sum.emission[1] += 0.5 * (color[0] * tau[1] + color[1] * tau[0]);
-        sum.emission[2] += color[1] * tau[1];
-    } else {
-        sum.emission[0] += color[0];
-        sum.emission[1] += 0.5 * (color[0] + color[1]);
-        sum.emission[2] += color[1];
-    }
+    // q as a quadratic, then times what is linear.
+    const bool density = transfer_->model() == OpticalModel::density;
+    const glm::dvec3 front = density ? color[0] * tau[0] : color[0], back = density ? color[1] * tau[1] : color[1];
+    const glm::dvec3 middle = 0.5 * (density ? color[0] * tau[1] + color[1] * tau[0] : color[0] + color[1]);
+    sum.emission[0] += shares.front * front;
+    sum.emission[1] += (2.0 * shares.front * middle + shares.back * front) / 3.0;
+    sum.emission[2] += (2.0 * shares.back * middle + shares.front * back) / 3.0;
+    sum.emission[3] += shares.back * back;
 }
 
-void RayLight::add(std::span<const ScalarEnds> media, std::span<const ScalarEnds> opacity, double length) {
-    assert(length >= 0 && std::isfinite(length) && (opacity.empty() || opacity.size() == media.size()));
+void RayLight::add(std::span<const ScalarEnds> media, std::span<const ScalarEnds> opacity, double length, std::span<const ShareEnds> shares) {
+    assert(length >= 0 && std::isfinite(length) && (opacity.empty() || opacity.size() == media.size()) &&
+           (shares.empty() || shares.size() == media.size()));
     if (media.empty() || length == 0 || opaque()) return;
     walks_.clear();
     opacity_walks_.clear();
@@ -128,10 +128,12 @@ void RayLight::add(std::span<const ScalarEnds> media, std::span<const ScalarEnds
         for (std::size_t i = 0; i < walks_.size(); ++i) {
             const Walk::Step step = walks_[i].advance(end);
             walked = step.walked;
+            ShareEnds here{glm::dvec3(1), glm::dvec3(1)};
+            if (!shares.empty()) here = {glm::mix(shares[i].front, shares[i].back, begin), glm::mix(shares[i].front, shares[i].back, end)};
             if (opacity_walks_.empty()) {
-                superpose(step.color, step.extinction, stretch);
+                superpose(step.color, step.extinction, here, stretch);
             } else {
-                superpose(step.color, opacity_walks_[i].advance(end).extinction, stretch);
+                superpose(step.color, opacity_walks_[i].advance(end).extinction, here, stretch);
             }
         }
         // The scalar tells the share of a single medium with all digits, even between nodes one ulp apart.
@@ -152,20 +154,21 @@ void RayLight::integrate(const Stretch& stretch) {
     const double depth = stretch.depth();
     const double transmittance = std::exp(-depth_);
     const auto& q = stretch.emission;
-    const double brightest = std::max({largest(q[0]), largest(q[1]), largest(q[2])});
+    const double brightest = std::max({largest(q[0]), largest(q[1]), largest(q[2]), largest(q[3])});
     const bool dark =
         brightest == 0 || opaque() || (depth_ > dark_depth && transmittance * brightest * stretch.length < negligible);
     if (!dark && depth > eight_points_depth) {
         const double tau = 0.5 * (stretch.extinction[0] + stretch.extinction[1]);
-        const glm::dvec3 a = 0.5 * (q[0] + q[1]), b = 0.5 * (q[1] + q[2]), middle = 0.5 * (a + b);  // de Casteljau
-        integrate({0.5 * stretch.length, {stretch.extinction[0], tau}, {q[0], a, middle}});
-        integrate({0.5 * stretch.length, {tau, stretch.extinction[1]}, {middle, b, q[2]}});
+        const glm::dvec3 a = 0.5 * (q[0] + q[1]), b = 0.5 * (q[1] + q[2]), c = 0.5 * (q[2] + q[3]);  // de Casteljau
+        const glm::dvec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), middle = 0.5 * (ab + bc);
+        integrate({0.5 * stretch.length, {stretch.extinction[0], tau}, {q[0], a, ab, middle}});
+        integrate({0.5 * stretch.length, {tau, stretch.extinction[1]}, {middle, bc, c, q[3]}});
         return;
     }
     if (!dark) {
         const Weights w = depth <= four_points_depth ? bernstein_weights(stretch.length, stretch.extinction, four_points)
                                                      : bernstein_weights(stretch.length, stretch.extinction, eight_points);
-        color_ += (transmittance * stretch.length) * (w.front * q[0] + w.middle * q[1] + w.back * q[2]);
+        color_ += (transmittance * stretch.length) * (w[0] * q[0] + w[1] * q[1] + w[2] * q[2] + w[3] * q[3]);
     }
     depth_ += depth;
 }

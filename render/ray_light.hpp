@@ -12,6 +12,8 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "classify/transfer_function.hpp"
 
 namespace cellproj {
@@ -21,8 +23,13 @@ struct ScalarEnds {
     double front, back;
 };
 
+// What of its light the medium of a cell sends to the eye, by channel, at both ends of an interval, linear in between (EKE01 §5.4).
+struct ShareEnds {
+    glm::dvec3 front, back;  // ≥ 0
+};
+
 // An interval is cut where the scalar of any medium meets a breakpoint of the transfer function. On such a stretch τ is linear
-// and q quadratic; they are kept as Bézier control points, none of them negative, so that halving a stretch cancels nothing.
+// and q cubic; they are kept as Bézier control points, none of them negative, so that halving a stretch cancels nothing.
 // It is halved until its optical depth is at most 1/2, where an eight-point Gauss–Legendre rule is exact to 1e-15; the depth
 // itself is a closed form. Behind a depth of 40 a stretch is left out when it cannot add 1e-16 to a channel. Colour and
 // opacity are right to 1e-12 absolute for colours within 0..1, in tests/ray_light_test.cpp. One ray, one thread.
@@ -35,8 +42,8 @@ public:
     // scalars, |s| ≤ 1e150, for each cell there. No cell: empty space.
     void add(std::span<const ScalarEnds> media, double length) { add(media, {}, length); }
     // The same where colour is a function of one scalar and extinction of another: as many `opacity` as `media`, in their order, or
-    // none where both are functions of one.
-    void add(std::span<const ScalarEnds> media, std::span<const ScalarEnds> opacity, double length);
+    // none where both are functions of one. `shares`: likewise, of media that are lit; none: they send all of their light.
+    void add(std::span<const ScalarEnds> media, std::span<const ScalarEnds> opacity, double length, std::span<const ShareEnds> shares = {});
 
     // A surface without thickness, farther than all before: associated, opacity 0..1.
     void add(const Light& surface);
@@ -50,7 +57,7 @@ private:
     struct Stretch {
         double length;
         double extinction[2];    // at the ends
-        glm::dvec3 emission[3];  // Bézier control points
+        glm::dvec3 emission[4];  // Bézier control points
 
         double depth() const { return 0.5 * (extinction[0] + extinction[1]) * length; }
     };
@@ -81,7 +88,7 @@ private:
         bool done_ = false;
     };
 
-    void superpose(const glm::dvec3 (&color)[2], const double (&extinction)[2], Stretch& sum) const;
+    void superpose(const glm::dvec3 (&color)[2], const double (&extinction)[2], const ShareEnds& shares, Stretch& sum) const;
     void integrate(const Stretch& stretch);
 
     const TransferFunction* transfer_;

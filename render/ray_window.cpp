@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include <glm/geometric.hpp>
@@ -22,7 +23,58 @@ std::optional<double> meet(const std::array<FramePoint, 3>& p) {
     return (w[0] * p[0].t + w[1] * p[1].t + w[2] * p[2].t) / (w[0] + w[1] + w[2]);
 }
 
+// The side of a plane along a ray: ahead + speed·t ≥ 0 is kept.
+struct PlaneOnRay {
+    double ahead, speed;
+
+    PlaneOnRay(const HalfSpace& half_space, const glm::dvec3& middle, const ViewRay& ray) {
+        const glm::dvec3 n = unit_normal(half_space);
+        ahead = glm::dot(n, ray.origin - (half_space.point - middle));
+        speed = glm::dot(n, ray.direction);
+    }
+    double root() const { return -ahead / speed; }
+};
+
+// Whether the plane of a slice cuts a cell, or only touches it.
+enum class Met { not_at_all, touched, cut };
+
+Met meet(const Slice& slice, const TetMesh& mesh, CellId cell) {
+    const glm::dvec3 normal = unit_normal(slice.plane);
+    bool above = false, below = false, on = false;
+    for (const VertexId v : mesh.tets[cell]) {
+        const double distance = distance_to_plane(mesh.points[v], slice.plane.point, normal);
+        above = above || distance > 0;
+        below = below || distance < 0;
+        on = on || distance == 0;
+    }
+    if (above && (below || on)) return Met::cut;
+    return on && !slice.cap ? Met::touched : Met::not_at_all;
+}
+
 }  // namespace
+
+std::optional<SliceHit> slice_hit(const Scene& scene, const glm::dvec3& middle, const ViewRay& ray, const RayWindow& window,
+                                  std::span<const RaySegment> along, double rounding) {
+    std::optional<SliceHit> nearest;
+    if (!scene.slices) return nearest;
+    for (const Slice& slice : scene.slices->slices) {
+        const double t = PlaneOnRay(slice.plane, middle, ray).root();
+        if (!std::isfinite(t) || !(t > ray.start) || !(t >= window.begin && t <= window.end) || (nearest && !(t < nearest->t))) continue;
+        const RaySegment* best = nullptr;
+        Met how = Met::not_at_all;
+        for (const RaySegment& segment : along) {
+            if (segment.enter - rounding > t || segment.leave + rounding < t) continue;
+            const Met met = meet(slice, *scene.mesh, segment.cell);
+            if (met <= how) continue;
+            how = met;
+            best = &segment;
+        }
+        if (!best) continue;
+        const double scalar = best->at(std::clamp(t, best->enter, best->leave));
+        if (SliceColors(*scene.slices->colors).at(scalar)) nearest = {t, scalar};
+    }
+    return nearest;
+}
 
 RayWindow ray_window(const Scene& scene, const glm::dvec3& middle, const ViewRay& ray) {
     RayWindow window{ray.start, std::numeric_limits<double>::infinity(), std::nullopt};
@@ -31,11 +83,10 @@ RayWindow ray_window(const Scene& scene, const glm::dvec3& middle, const ViewRay
         window.end = -window.begin;
     };
     for (const HalfSpace& half_space : scene.clip ? scene.clip->half_spaces : std::vector<HalfSpace>{}) {
-        const glm::dvec3 n = unit_normal(half_space);
-        const double ahead = glm::dot(n, ray.origin - (half_space.point - middle)), speed = glm::dot(n, ray.direction);
-        if (speed > 0) window.begin = std::max(window.begin, -ahead / speed);
-        if (speed < 0) window.end = std::min(window.end, -ahead / speed);
-        if (speed == 0 && ahead < 0) nothing();
+        const PlaneOnRay plane(half_space, middle, ray);
+        if (plane.speed > 0) window.begin = std::max(window.begin, plane.root());
+        if (plane.speed < 0) window.end = std::min(window.end, plane.root());
+        if (plane.speed == 0 && plane.ahead < 0) nothing();
     }
     if (!scene.bodies) return window;
     const RayFrame frame(ray);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The judge's view of clip regions and bodies: what they leave of one ray. Every plane and every triangle is asked, each by itself.
+// The judge's view of clip regions, bodies and slices: what they leave of one ray. Every plane and every triangle is asked, each by itself.
 //
 // Triangles are decided as the cells of ray_index.hpp are: vertices are seen in the frame of the ray, and the sign of a difference of two
 // products is exact (Kahan). A ray through an edge meets the triangles on both sides of it, so that a closed surface has no holes; of
@@ -8,10 +8,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include <glm/vec3.hpp>
 
 #include "render/ray_index.hpp"
+#include "render/ray_surfaces.hpp"
 #include "render/scene.hpp"
 
 namespace cellproj {
@@ -23,6 +25,12 @@ struct BodyHit {
     glm::dvec3 normal;       // of the triangle, of any length; along its corners' turn
 };
 
+// Where a ray meets the plane of a slice, and the scalar there.
+struct SliceHit {
+    double t;  // on the ray [mesh units]
+    double scalar;
+};
+
 struct RayWindow {
     double begin, end;            // of what the clip region keeps [t]; begin > end: nothing
     std::optional<BodyHit> body;  // from the ray's start on, clipped or not
@@ -30,6 +38,11 @@ struct RayWindow {
     // Of the field: from `begin` to here.
     double end_of_field() const { return body && body->t < end ? body->t : end; }
 };
+
+// The nearest slice that the ray meets in the window: not by the triangles that renderers draw (SliceScene::cuts), but by the cells along the
+// ray, of which that one counts which the plane cuts (mesh/plane_cut.hpp). `rounding`: of places along the ray [mesh units].
+std::optional<SliceHit> slice_hit(const Scene& scene, const glm::dvec3& middle, const ViewRay& ray, const RayWindow& window,
+                                  std::span<const RaySegment> along, double rounding);
 
 // `middle`: what the ray is relative to (RayIndex::middle). O(#planes + #triangles).
 RayWindow ray_window(const Scene& scene, const glm::dvec3& middle, const ViewRay& ray);

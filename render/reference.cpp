@@ -53,8 +53,11 @@ double outside(double value, double low, double high) {
 Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene_(std::move(scene)), index_(std::move(index)) {
     validate(scene_);
     if (!index_) index_ = std::make_shared<RayIndex>(*scene_.mesh);
+    const double diagonal = bounds(scene_.mesh->points).diagonal();
+    rounding_ = rounding_along_ray(diagonal);
     if (!scene_.surfaces) return;
-    rounding_ = rounding_along_ray(bounds(scene_.mesh->points).diagonal());
+    const ScalarRange values = range(scene_.field->values);
+    weak_ = diagonal > 0 ? weak_gradient * (values.high - values.low) / (0.5 * diagonal) : 0.0;
     if (scene_.surfaces->shading == Shading::flat) gradients_ = cell_gradients(*scene_.mesh, *scene_.field);
     if (scene_.surfaces->shading == Shading::smooth) gradients_ = vertex_gradients(*scene_.mesh, *scene_.field);
 }
@@ -68,11 +71,16 @@ std::vector<SurfaceHit> Reference::surfaces_along(const ViewRay& ray) const {
 }
 
 glm::dvec3 Reference::gradient_at(const SurfaceHit& hit) const {
-    if (!scene_.surfaces || scene_.surfaces->shading == Shading::unlit) return glm::dvec3(0);
-    if (scene_.surfaces->shading == Shading::flat) return gradients_.values[hit.cell];
+    return scene_.surfaces ? gradient(hit.cell, hit.weights) : glm::dvec3(0);
+}
+
+// At the place of a cell with these weights of its points.
+glm::dvec3 Reference::gradient(CellId cell, const std::array<double, 4>& weights) const {
+    if (scene_.surfaces->shading == Shading::unlit) return glm::dvec3(0);
+    if (scene_.surfaces->shading == Shading::flat) return gradients_.values[cell];
     glm::dvec3 sum(0);
     for (std::size_t corner = 0; corner < 4; ++corner)
-        sum += hit.weights[corner] * gradients_.values[scene_.mesh->tets[hit.cell][corner]];
+        sum += weights[corner] * gradients_.values[scene_.mesh->tets[cell][corner]];
     return sum;
 }
 
@@ -90,10 +98,21 @@ Light Reference::reflected(const BodyHit& hit, const ViewRay& ray) const {
     return layer(shade(scene_.bodies->lighting, hit.body->color, hit.normal, -ray.direction), 1.0);
 }
 
+// What the medium of a cell sends to the eye where the ray enters and leaves it.
+ShareEnds Reference::shares(const RaySegment& segment, const ViewRay& ray) const {
+    const auto share = [&](const std::array<double, 4>& weights) {
+        const glm::dvec3 over_weak = weak_ > 0 ? gradient(segment.cell, weights) / weak_ : glm::dvec3(0);
+        return lit_share(scene_.surfaces->lighting, over_weak, -ray.direction);
+    };
+    return {share(segment.at_enter), share(segment.at_leave)};
+}
+
 Light Reference::light(const ViewRay& ray) const {
     const RayWindow window = ray_window(scene_, index_->middle(), ray);
-    const double window_end = window.end_of_field();
     const std::vector<RaySegment> along = ray_segments(scene_, index_->cells_along(ray));
+    const std::optional<SliceHit> slice = slice_hit(scene_, index_->middle(), ray, window, along, rounding_);
+    const bool slice_first = slice && !(window.body && window.body->t <= slice->t);
+    const double window_end = slice_first ? slice->t : window.end_of_field();
     const std::vector<SurfaceHit> hits =
         scene_.surfaces ? surface_hits(scene_.surfaces->isosurfaces, along, rounding_) : std::vector<SurfaceHit>{};
     std::vector<double> bounds;
@@ -110,8 +129,13 @@ Light Reference::light(const ViewRay& ray) const {
 
     // Between two neighbouring bounds the same segments are there, and no surface.
     RayLight light(*scene_.transfer);
-    std::vector<RaySegment> here;
+    const bool lit = has_lit_medium(scene_);
+    struct LitSegment : RaySegment {
+        ShareEnds shares{};  // at both ends of the segment, where the medium is lit
+    };
+    std::vector<LitSegment> here;
     std::vector<ScalarEnds> media, opacity;
+    std::vector<ShareEnds> shares_here;
     auto next = along.begin();
     auto hit = hits.begin();
     for (std::size_t i = 0; i < bounds.size() && !light.opaque(); ++i) {
@@ -120,18 +144,22 @@ Light Reference::light(const ViewRay& ray) const {
             if (hit->t >= window.begin) light.add(reflected(*hit, ray));
         if (i + 1 == bounds.size()) break;
         const double end = bounds[i + 1];
-        while (next != along.end() && next->enter <= begin)
-            here.push_back(*next++);
+        for (; next != along.end() && next->enter <= begin; ++next)
+            here.push_back({*next, lit ? shares(*next, ray) : ShareEnds{}});
         std::erase_if(here, [&](const RaySegment& segment) { return segment.leave <= begin; });
         media.clear();
         opacity.clear();
-        for (const RaySegment& segment : here) {
+        shares_here.clear();
+        for (const LitSegment& segment : here) {
             media.push_back({segment.at(begin), segment.at(end)});
             if (scene_.opacity_field) opacity.push_back({segment.opacity_at(begin), segment.opacity_at(end)});
+            const auto& [front, back] = segment.shares;
+            if (lit) shares_here.push_back({glm::mix(front, back, segment.share(begin)), glm::mix(front, back, segment.share(end))});
         }
-        light.add(media, opacity, end - begin);
+        light.add(media, opacity, end - begin, shares_here);
     }
-    if (window.body) light.add(reflected(*window.body, ray));
+    if (slice_first) light.add(layer(*SliceColors(*scene_.slices->colors).at(slice->scalar), 1.0));
+    else if (window.body) light.add(reflected(*window.body, ray));
     return light.light();
 }
 

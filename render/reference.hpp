@@ -11,8 +11,10 @@
 //   cell after the other gets the same opacity, but the colour of the one it draws last is in front.
 // - Isosurfaces lie where the linear scalar of a cell passes their value (ray_surfaces.hpp): the medium is integrated up to
 //   them, then they are composited, unlit or lit by the cell's or the points' gradients.
+// - Where the medium is lit, each cell sends a share of its light to the eye that is linear along the ray, between `lit_share` by
+//   the gradients where the ray enters and leaves it.
 // - Of mesh and isosurfaces counts what the clip region keeps (ray_window.hpp): rays are cut at its planes. Bodies are opaque, lit by the
-//   normals of their triangles, and stay whole.
+//   normals of their triangles, and stay whole. Slices are opaque and unlit; their scalar is that of the cell which their plane cuts there.
 // - Perspective rays begin at the eye, parallel ones at infinity. (The renderers cut at their near plane, a thousandth of the
 //   distance to the camera's center.)
 // - A ray along a face, an edge or through a vertex is decided as one beside it, the same for all cells (ray_index.hpp).
@@ -70,11 +72,14 @@ public:
 private:
     Light reflected(const SurfaceHit& hit, const ViewRay& ray) const;
     Light reflected(const BodyHit& hit, const ViewRay& ray) const;
+    glm::dvec3 gradient(CellId cell, const std::array<double, 4>& weights) const;
+    ShareEnds shares(const RaySegment& segment, const ViewRay& ray) const;
 
     Scene scene_;
     std::shared_ptr<const RayIndex> index_;
     double rounding_ = 0;  // of places along a ray [mesh units]
     Gradients gradients_;  // of cells (flat) or points (smooth)
+    double weak_ = 0;      // weak_gradient [scalar / mesh unit]; 0: there is no gradient
 };
 
 // For a single picture of a scene.

@@ -30,7 +30,9 @@ struct Quality {
     // not overlap, cyclic or not; `order` and `check_rays` do not count then.
     bool order_per_pixel = false;
     SurfaceMethod surfaces = {};                  // how isosurfaces are found; the CPU backend draws `exact` only
-    std::size_t check_rays = 0;                   // after the frame, for the statistics: rays that judge the order
+    // After the frame, for the statistics: count face neighbours in the wrong order, by exact signs (an eighth of a frame), …
+    bool check_neighbours = true;
+    std::size_t check_rays = 0;                   // … and as many rays that judge it
 };
 
 // A renderer keeps what does not depend on the view (adjacency, table, visibility of cells) for the scene it drew last: a

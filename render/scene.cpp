@@ -27,6 +27,10 @@ void validate(const TetMesh& mesh, const ScalarField& field) {
 
 bool has_surfaces(const Scene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
 
+bool has_lit_medium(const Scene& scene) { return scene.surfaces && scene.surfaces->lit_medium && scene.surfaces->shading != Shading::unlit; }
+
+RayCuts ray_cuts(const Scene& scene) { return count_cuts(scene.clip.get(), scene.bodies.get(), scene.slices.get()); }
+
 void validate(const Scene& scene) {
     assert(scene.mesh && scene.field && scene.transfer);
     const ScalarField& field = *scene.field;
@@ -34,9 +38,11 @@ void validate(const Scene& scene) {
     if (scene.opacity_field) validate(*scene.mesh, *scene.opacity_field);
     if (scene.clip) validate(*scene.clip, "clip region");
     if (scene.bodies) validate(*scene.bodies);
-    if (!has_surfaces(scene)) return;
+    assert(!scene.slices || scene.slices->cuts.size() == scene.slices->slices.size());
+    if (scene.slices) validate(*scene.slices);
+    if (!has_surface_scene(scene)) return;
     if (field.location == FieldLocation::cells) {
-        throw Error({ErrorKind::option, "isosurfaces of field \"" + field.name + "\"", "a field on points",
+        throw Error({ErrorKind::option, (has_surfaces(scene) ? "isosurfaces of field \"" : "light by the gradient of field \"") + field.name + "\"", "a field on points",
                      "one on cells, constant in each", "carry it to the points first (--cell-values averaged)"});
     }
     validate(scene.surfaces->lighting, "lights");

@@ -50,7 +50,7 @@ Json picture_json(const Statistics& picture) {
               {"unordered", counts.unordered},
               {"cycles", counts.cycles},
               {"split_cells", counts.split_cells},
-              {"order_violations", counts.order_violations}}},
+              {"order_violations", or_null(counts.order_violations)}}},
             {"drawn_as", picture.drawn_as},
             {"method", picture.method},
             {"target", picture.target},

@@ -46,7 +46,7 @@ struct Statistics {
         std::size_t unordered = 0;  // cells that the sorter could only order by depth
         std::size_t cycles = 0;            // visibility cycles
         std::size_t split_cells = 0;       // cells drawn as pieces, to get out of them
-        std::size_t order_violations = 0;  // pairs of face neighbours drawn the wrong way round
+        std::optional<std::size_t> order_violations = 0;  // pairs of face neighbours drawn the wrong way round; nothing: not counted
     } counts;
     std::string drawn_as = "tetrahedra";  // or "grid": the boxes of a regular grid as they are
     std::string method;           // of integration: "preint3d:64"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The isosurfaces of a scene and how they are lit.
+// The isosurfaces of a scene, and how they and the medium are lit.
 #pragma once
 
 #include "classify/isosurface.hpp"
@@ -19,6 +19,10 @@ struct SurfaceScene {
     IsoSurfaces isosurfaces{{}};
     Shading shading = Shading::smooth;
     Lighting lighting = {};  // its directions in the axes of the mesh
+    // The medium is lit as isosurfaces through all of its places would be (EKE01 §5.4, RS00 §8): of the light that its colour gives, it
+    // sends `lit_share` to the eye. Along a ray the share is linear in each cell, between what it is where the ray enters and leaves.
+    // Extinction stays as it is. Of unlit shading nothing is lit.
+    bool lit_medium = false;
 };
 
 }  // namespace cellproj

@@ -60,7 +60,8 @@ std::string to_string(const Quality& quality) {
 std::vector<TradeWay> ways_of(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
                               std::span<const Quality> qualities) {
     std::vector<TradeWay> ways;
-    for (const Quality& quality : qualities) {
+    for (Quality quality : qualities) {
+        quality.check_neighbours = false;  // nobody reads it
         ways.push_back({.name = to_string(quality),
                         .quality = quality,
                         .prepare = [=, &renderer] { renderer.prepare(scene, quality); },

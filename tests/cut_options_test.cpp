@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Clipping and bodies as a user asks for them: `cellproj render --clip --clip-box --surface`.
+// Clipping, bodies and slices as a user asks for them: `cellproj render --clip --clip-box --surface --slice --caps`.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "tests/support/voxel_scene_test.hpp"
@@ -38,7 +39,7 @@ TEST_F(CutOptions, BodiesHaveTheirColour) {
 
 // A ray may keep what is before the plane, what is behind it, or both.
 TEST_F(CutOptions, PlanesAndBoxesCut) {
-    const Pixel whole = seen("--as tets"), white{255, 255, 255};
+    const Pixel whole = seen(""), white{255, 255, 255};
     const std::string dense = "--opacity-scale 1000 --background 1,1,1 ";
     EXPECT_NE(seen("--clip 0,0,1:0,0,1"), whole);
     EXPECT_EQ(seen("--clip 0,0,-1:0,0,5"), whole);          // keeps all
@@ -49,6 +50,32 @@ TEST_F(CutOptions, PlanesAndBoxesCut) {
     EXPECT_EQ(seen("--clip 0,0,1:0,0,1 --clip 0,0,1.5:0,0,-1"), seen("--clip-box -9,-9,1,9,9,1.5"));
 }
 
+// The scalar falls from 20 at z = 0 to 0 at z = 2; grays from 0 to 1 over 0 .. 20. A slice hides what is behind it, alone or in the volume.
+TEST_F(CutOptions, SlicesAndCapsHaveTheColorsOfTheBar) {
+    write("g.json", R"({"color": [[0, 0, 0, 0], [20, 1, 1, 1]], "extinction": [[0, 0], [20, 0]]})");
+    const std::string grays = "--transfer g.json ";
+    const auto gray_of = [](double s) { return Pixel{static_cast<int>(std::lround(255 * s / 20)), static_cast<int>(std::lround(255 * s / 20)), static_cast<int>(std::lround(255 * s / 20))}; };
+    for (const std::string backend : {" --backend cpu", " --backend gl", " --as tets", " --as tets --backend gl"}) {
+        EXPECT_EQ(seen(grays + "--slice 0,0,0.7:0,0,1" + backend), gray_of(13)) << backend;
+        EXPECT_EQ(seen(grays + "--slice 0,0,1.5:0,0,-3 --slice 0,0,1.1:0,0,1" + backend), gray_of(9)) << backend;
+        EXPECT_EQ(seen(grays + "--slice 1,1,0.5:1,0,1" + backend), gray_of(15)) << backend;
+        EXPECT_EQ(seen(grays + "--clip 0,0,0.7:0,0,1 --caps" + backend), gray_of(13)) << backend;
+        EXPECT_EQ(seen(grays + "--clip-box 0,0,0.9,2,2,1.5 --caps" + backend), gray_of(11)) << backend;
+        EXPECT_EQ(seen(grays + "--slice 0,0,0.7:0,0,1 --clip 0,0,1:0,0,1" + backend), (Pixel{255, 255, 255})) << backend;  // cut away
+        // The volume comes before the slice where it is asked for.
+        EXPECT_EQ(seen("--slice 0,0,2:0,0,1 --volume" + backend), seen("--slice 0,0,2:0,0,1 --opacity-scale 1" + backend));
+        EXPECT_NE(seen("--slice 0,0,2:0,0,1 --volume" + backend), seen("--slice 0,0,2:0,0,1" + backend));
+    }
+    EXPECT_NE(run("--slice 0,0,1:0,0,1 --explain --as tets").text.find("none: 1 slice alone"), std::string::npos);
+    EXPECT_NE(run("--slice 0,0,1:0,0,1 --explain --volume").text.find("1 slice: a part of each ray is left"), std::string::npos);
+    for (const std::string as : {"grid", "tets"}) {
+        const Outcome beside = run("--slice 0,0,2.1:0,0,1 --as " + as);
+        EXPECT_EQ(beside.code, 0) << beside.text;
+        EXPECT_NE(beside.text.find("--slice 0,0,2.1:0,0,1: nothing of the mesh is in this plane; the mesh lies in 0,0,0,2,2,2"), std::string::npos) << beside.text;
+        EXPECT_EQ(middle_of("p.png"), (Pixel{255, 255, 255}));
+    }
+}
+
 // Of radius 1 about the origin, which is a corner of the voxels.
 TEST_F(CutOptions, TheSphereOfTheDemoIsABody) {
     const std::string box = " --clip-box 1.9,1.9,1.9,2,2,2";
@@ -57,8 +84,8 @@ TEST_F(CutOptions, TheSphereOfTheDemoIsABody) {
 }
 
 TEST_F(CutOptions, ArePutDownInThePicture) {
-    EXPECT_EQ(run("--clip 0,0,1:0,0,1 --surface square.off:red").code, 0);
-    EXPECT_NE(content("p.png").find("--clip 0,0,1:0,0,1 --surface square.off:red"), std::string::npos);
+    EXPECT_EQ(run("--clip 0,0,1:0,0,1 --surface square.off:red --slice 1,1,1:1,0,0 --caps").code, 0);
+    EXPECT_NE(content("p.png").find("--clip 0,0,1:0,0,1 --caps --slice 1,1,1:1,0,0 --surface square.off:red"), std::string::npos);
 }
 
 TEST_F(CutOptions, WhatCannotBeUnderstoodIsRefused) {
@@ -78,6 +105,10 @@ TEST_F(CutOptions, WhatCannotBeUnderstoodIsRefused) {
     expect_refused("--surface empty.off", {"empty.off"});
     expect_refused("--light 1,0,0", {"--light", "--surface"});
     expect_refused("--clip 0,0,1:0,0,1 --method shirley-tuchman", {"--method", "integral"});
+    expect_refused("--slice 0,0,1", {"--slice", "X,Y,Z:NX,NY,NZ", "\"0,0,1\""});
+    expect_refused("--slice 0,0,1:0,0,nan", {"--slice"});
+    expect_refused("--slice 0,0,1:0,0,0", {"--slice", "a length"});
+    expect_refused("--caps", {"--caps", "--clip"});
 }
 
 }  // namespace

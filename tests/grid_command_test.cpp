@@ -74,8 +74,7 @@ TEST_F(GridCommand, AGridIsDrawnAsItIs) {
 }
 
 TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
-    for (const char* option : {"--iso 20 --iso-method table", "--iso 20 --backend gl", "--order mpvo", "--cell-values averaged", "--verify-order", "--clip 1,1,1:0,0,1",
-                               "--clip-box 0,0,0,2,2,2"}) {
+    for (const char* option : {"--iso 20 --iso-method table", "--iso 20 --backend gl", "--order mpvo", "--cell-values averaged", "--verify-order"}) {
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "tetrahedra") << option;
         std::filesystem::remove(folder_ / "p.png");
         expect_refused(std::string(voxels) + " --as grid " + option, {"regular grid", "--as tets"});
@@ -83,6 +82,14 @@ TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
     for (const char* option : {"--target rgba8", "--method shirley-tuchman", "--opacity-field Points:x"})
         expect_refused(std::string(voxels) + " --as grid " + option, {"regular grid", "--as tets"});
     EXPECT_EQ(run(std::string(voxels) + " --as boxes").code, 2);
+}
+
+TEST_F(GridCommand, RaysThroughAGridAreCutInIt) {
+    for (const char* option : {"--clip 1,1,1:0,0,1", "--clip-box 0,0,0,2,2,2 --caps", "--surface demo:sphere", "--slice 1,1,1:1,1,1 --volume"})
+        for (const char* backend : {" --backend cpu", " --backend gl"}) EXPECT_EQ(drawn_as(std::string(voxels) + " " + option + backend), "grid") << option;
+    EXPECT_EQ(drawn_as(std::string(voxels) + " --clip 1,1,1:0,0,1 --verify-order"), "tetrahedra");
+    std::filesystem::remove(folder_ / "p.png");
+    expect_refused(std::string(voxels) + " --slice 1,1,1:1,1,1 --sampling object:8", {"--sampling", "1 slice", "object:8"});
 }
 
 TEST_F(GridCommand, IsosurfacesAreThoseOfTheGrid) {

@@ -63,6 +63,23 @@ TEST_F(IsoOptions, ShadingAndLight) {
     EXPECT_EQ(run("--volume").code, 2);
 }
 
+// The volume alone, or around surfaces; a headlight shows what faces it in its own colour, and light from behind a tenth of it.
+TEST_F(IsoOptions, TheVolumeIsLitOnDemand) {
+    const Pixel unlit = seen("--opacity-scale 1");
+    const Pixel facing = seen("--shade-volume --light 0,0,-3"), behind = seen("--shade-volume --shading flat --light 0,0,1");
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(facing[k], unlit[k], 1);
+        EXPECT_LE(behind[k], unlit[k]);
+    }
+    EXPECT_NE(behind, unlit);
+    EXPECT_NE(seen("--iso 5:0,0,0:0.5 --shade-volume --light 0,0,1"), seen("--iso 5:0,0,0:0.5 --volume --light 0,0,1"));
+    EXPECT_NE(content("p.png").find("cellproj isosurfaces"), std::string::npos);
+    ASSERT_EQ(run("--shade-volume --explain").code, 0);
+    EXPECT_NE(content("p.png").find("--shade-volume --shading smooth"), std::string::npos);
+    EXPECT_EQ(run("--shade-volume --shading unlit").code, 2);
+    EXPECT_EQ(run("--shade-volume --method shirley-tuchman").code, 1);
+}
+
 TEST_F(IsoOptions, AreToldInTheStatisticsAndThePicture) {
     ASSERT_EQ(run("--iso 5,15 --stats s.json").code, 0);
     const auto json = nlohmann::json::parse(content("s.json")).at("pictures").at(0);

@@ -96,6 +96,19 @@ TEST(Lighting, IsFiniteAndNeverNegative) {
     }
 }
 
+// Steep gradients as a surface, none at all as it is unlit, and no jump in between; of any size from 1e-300 to 1e300.
+TEST(Lighting, OfAMediumGoesFromUnlitToThatOfASurface) {
+    const Lighting lighting{.lights = {{.towards = glm::dvec3(1, 2, 0.5)}, {.diffuse = 0.2}}};
+    const glm::dvec3 normal(0.3, -0.4, 0.8), eye(0.2, 0.1, 1), lit = shade(lighting, glm::dvec3(1), normal, eye);
+    const auto near = [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b) < 1e-12; };
+    EXPECT_EQ(lit_share(lighting, glm::dvec3(0), eye), glm::dvec3(1));
+    EXPECT_EQ(lit_share(lighting, glm::dvec3(std::numeric_limits<double>::quiet_NaN()), eye), glm::dvec3(1));
+    EXPECT_TRUE(near(lit_share(lighting, -glm::normalize(normal), eye), 0.5 * (glm::dvec3(1) + lit)));
+    EXPECT_TRUE(near(lit_share(lighting, -10.0 * glm::normalize(normal), eye), glm::dvec3(1) + 100.0 / 101 * (lit - glm::dvec3(1))));
+    for (const double size : {1e-300, 1e-160, 1e-9}) EXPECT_TRUE(near(lit_share(lighting, size * normal, eye), glm::dvec3(1))) << size;
+    for (const double size : {1e9, 1e160, 1e300}) EXPECT_TRUE(near(lit_share(lighting, -size * normal, eye), lit)) << size;
+}
+
 TEST(Lighting, RefusesWhatCannotBe) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const auto refused = [](const Lighting& lighting, const std::string& place) {

@@ -23,10 +23,10 @@ constexpr const char* embedded_body = "demo:sphere";
     throw Error({ErrorKind::option, option, expected, "\"" + found + "\"", advice});
 }
 
-HalfSpace parse_plane(const std::string& text) {
+HalfSpace parse_plane(const char* option, const std::string& text, const char* advice) {
     const auto parts = split(text, ':');
     const auto point = to_point(parts[0]), normal = parts.size() == 2 ? to_point(parts[1]) : std::nullopt;
-    if (!point || !normal) refuse("--clip", "a point and a normal, X,Y,Z:NX,NY,NZ", text, "0,0,0:1,0,0 keeps what is right of the origin");
+    if (!point || !normal) refuse(option, "a point and a normal, X,Y,Z:NX,NY,NZ", text, advice);
     return {*point, *normal};
 }
 
@@ -46,6 +46,20 @@ std::string in_words(const Bounds& box) {
     return text;
 }
 
+// Of what the region keeps, if there is one.
+void add_slices(const CutOptions& options, std::shared_ptr<const TransferFunction> colors, const Grid* grid, Scene& scene) {
+    if (options.slices.empty() && !options.caps) return;
+    std::vector<Slice> slices = slices_and_caps(parse_slices(options), options.caps ? scene.clip.get() : nullptr);
+    auto sliced = grid ? SliceScene{std::move(slices), std::move(colors)}
+                       : cut_slices(*scene.mesh, *scene.field, scene.opacity_field.get(), std::move(slices), std::move(colors));
+    const Bounds box = bounds(scene.mesh->points);
+    for (std::size_t i = 0; i < options.slices.size(); ++i) {
+        if (grid ? slice_meets(sliced.slices[i], grid->bounds()) : !sliced.cuts[i].empty()) continue;
+        std::fprintf(stderr, "cellproj: warning: --slice %s: nothing of the mesh is in this plane; the mesh lies in %s\n", options.slices[i].c_str(), in_words(box).c_str());
+    }
+    scene.slices = std::make_shared<const SliceScene>(std::move(sliced));
+}
+
 }  // namespace
 
 void add_cut_options(CLI::App& command, CutOptions& options) {
@@ -53,6 +67,11 @@ void add_cut_options(CLI::App& command, CutOptions& options) {
                        "Draw only the side of a plane that its normal points to: X,Y,Z:NX,NY,NZ, a point of it and the normal (again for more)")
         ->allow_extra_args(false);
     command.add_option("--clip-box", options.box, "Draw only what is inside a box: X0,Y0,Z0,X1,Y1,Z1");
+    command.add_option("--slice", options.slices,
+                       "Draw the field on a plane, opaque, in the colours of the bar: X,Y,Z:NX,NY,NZ, a point of it and its normal (again for more); "
+                       "without the volume around it, unless there is --volume")
+        ->allow_extra_args(false);
+    command.add_flag("--caps", options.caps, "Close what --clip and --clip-box cut open by the field on their planes, as --slice draws it");
     command.add_option("--surface", options.surfaces,
                        std::string("Draw an opaque body, a surface of STL, OFF, PLY, OBJ or VTP, or that of demo:sphere: FILE[:COLOR] (again for more); it is not clipped. COLOR: ") +
                            color_forms + "; default: gray")
@@ -62,9 +81,23 @@ void add_cut_options(CLI::App& command, CutOptions& options) {
 ClipRegion parse_region(const CutOptions& options) {
     ClipRegion region;
     if (!options.box.empty()) region = box_region(parse_box(options.box));
-    for (const std::string& plane : options.planes) region.half_spaces.push_back(parse_plane(plane));
+    for (const std::string& plane : options.planes) region.half_spaces.push_back(parse_plane("--clip", plane, "0,0,0:1,0,0 keeps what is right of the origin"));
     validate(region, "--clip");
     return region;
+}
+
+std::vector<HalfSpace> parse_slices(const CutOptions& options) {
+    ClipRegion planes;
+    for (const std::string& slice : options.slices)
+        planes.half_spaces.push_back(parse_plane("--slice", slice, "0,0,0:1,0,0 is the plane across x through the origin"));
+    for (const HalfSpace& plane : planes.half_spaces)
+        if (plane.normal == glm::dvec3(0.0)) throw Error({ErrorKind::option, "--slice", "a normal with a length", "0,0,0", "it stands on the plane: 0,0,1 is across z"});
+    return planes.half_spaces;
+}
+
+RayCuts planned_cuts(const CutOptions& options) {
+    const std::size_t planes = parse_region(options).half_spaces.size();
+    return {planes, options.surfaces.size(), options.slices.size(), options.caps ? planes : 0};
 }
 
 // File names may hold colons: what is a file as it stands is one.
@@ -77,7 +110,7 @@ BodyChoice parse_body(const std::string& text) {
     return {text.substr(0, colon), *color};
 }
 
-void add_cuts(const CutOptions& options, const Lighting& lighting, Scene& scene) {
+void add_cuts(const CutOptions& options, const Lighting& lighting, std::shared_ptr<const TransferFunction> colors, const Grid* grid, Scene& scene) {
     ClipRegion region = parse_region(options);
     if (!region.half_spaces.empty()) {
         const Bounds box = bounds(scene.mesh->points);
@@ -87,6 +120,7 @@ void add_cuts(const CutOptions& options, const Lighting& lighting, Scene& scene)
         }
         scene.clip = std::make_shared<const ClipRegion>(std::move(region));
     }
+    add_slices(options, std::move(colors), grid, scene);
     if (options.surfaces.empty()) return;
     BodyScene bodies{.bodies = {}, .lighting = lighting};
     for (const std::string& text : options.surfaces) {
@@ -101,6 +135,8 @@ std::string text_of(const CutOptions& options) {
     const auto add = [&](const char* option, const std::string& value) { text += (text.empty() ? "" : " ") + std::string(option) + " " + value; };
     if (!options.box.empty()) add("--clip-box", options.box);
     for (const std::string& plane : options.planes) add("--clip", plane);
+    if (options.caps) text += (text.empty() ? "" : " ") + std::string("--caps");
+    for (const std::string& slice : options.slices) add("--slice", slice);
     for (const std::string& surface : options.surfaces) add("--surface", surface);
     return text;
 }

@@ -24,6 +24,7 @@ struct PictureWishes {
     Backend backend;  // of a grid
     Quality quality;
     GridSampling sampling;  // of a grid
+    bool measured_method;  // --max-error
     bool named_order;      // --order, but for auto
 };
 
@@ -35,6 +36,6 @@ ChosenBackend choose_grid_backend(BackendWish wish, const GridSampling& sampling
 DrawnAs choose_drawn_as(const SceneOptions& options, const PictureWishes& wishes);
 
 // Throws Error (option) for what is not drawn of hierarchies of grids as they are.
-void require_hierarchy_drawn(Backend backend, const GridQuality& quality, bool surfaces);
+void require_hierarchy_drawn(const SceneOptions& options, Backend backend, const GridQuality& quality);
 
 }  // namespace cellproj::cli

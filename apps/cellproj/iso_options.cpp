@@ -54,13 +54,19 @@ void add_iso_options(CLI::App& command, IsoOptions& options) {
                                               color_forms + "; default: that of the transfer function at the value. OPACITY: 0..1, default 1")
                            ->allow_extra_args(false);
     command.add_flag("--volume", options.volume,
-                     "Draw the volume around the isosurfaces, too; so do --transfer, --opacity-scale and --opacity-field")
-        ->needs(iso);
+                     "Draw the volume around isosurfaces and slices, too; so do --transfer, --opacity-scale and --opacity-field");
+    command.add_flag("--shade-volume", options.shade_volume,
+                     "Light the volume by its gradient, as isosurfaces are by theirs; draws it around isosurfaces and slices, too");
     command.add_option("--shading", options.shading,
-                       "Isosurfaces: smooth (by the gradients of the points), flat (of the cells), or unlit: their colour as it is")
-        ->check(CLI::IsMember({"flat", "smooth", "unlit"}))->capture_default_str()->needs(iso);
-    command.add_option("--light", options.light, "Isosurfaces and bodies: towards a distant light, X,Y,Z; default: a headlight")
+                       "Isosurfaces and --shade-volume: smooth (by the gradients of the points), flat (of the cells), or unlit: isosurfaces in their colour as it is")
+        ->check(CLI::IsMember({"flat", "smooth", "unlit"}))->capture_default_str()
+        ->each([&options](const std::string&) { options.shading_chosen = true; });
+    command.add_option("--light", options.light, "Isosurfaces, bodies and --shade-volume: towards a distant light, X,Y,Z; default: a headlight")
         ->expected(3)->delimiter(',');
+}
+
+void require_something_in_volume(const IsoOptions& options, bool slices) {
+    if (options.volume && !options.any() && !slices) throw CLI::ValidationError("--volume", "without --iso and --slice it is drawn anyway");
 }
 
 SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& colors) {
@@ -71,7 +77,15 @@ SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& c
                                   : options.shading == "unlit" ? Shading::unlit
                                                                : Shading::smooth};
     scene.lighting = parse_lighting(options);
+    scene.lit_medium = options.shade_volume;
     return scene;
+}
+
+void require_shaded(const IsoOptions& options, bool bodies) {
+    if (options.shade_volume && options.shading == "unlit") throw CLI::ExcludesError("--shade-volume", "--shading unlit");
+    if (options.shading_chosen && !options.any_shaded()) throw CLI::RequiresError("--shading", "--iso or --shade-volume");
+    if (!options.light.empty() && !options.any_shaded() && !bodies)
+        throw Error({ErrorKind::option, "--light", "isosurfaces, bodies or a volume to be lit", "none", "give --iso, --surface or --shade-volume"});
 }
 
 Lighting parse_lighting(const IsoOptions& options) {

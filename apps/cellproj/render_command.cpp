@@ -14,7 +14,6 @@
 #include "grid_options.hpp"
 #include "mesh/error.hpp"
 #include "progress.hpp"
-#include "render/depth_window.hpp"
 #include "render/grid_trade.hpp"
 #include "render/output_file.hpp"
 #include "render/plan.hpp"
@@ -112,7 +111,7 @@ void warn(const Image& image, const Statistics& statistics, const std::filesyste
 void print_proof(const Statistics& s) {
     if (!s.order_check) return;
     std::printf("order %s%s: %zu face relations violated; %zu of %zu rays meet cells in another order (%zu pairs)\n", s.order.c_str(),
-                s.order_exact ? ", exact" : "", s.counts.order_violations, s.order_check->wrong_rays, s.order_check->rays,
+                s.order_exact ? ", exact" : "", s.counts.order_violations.value_or(0), s.order_check->wrong_rays, s.order_check->rays,
                 s.order_check->wrong_pairs);
 }
 
@@ -174,10 +173,11 @@ double tell_choice(const QualityChoice& choice, double max_error, const ChoiceOp
 Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene, const std::vector<Camera>& cameras, ImageSize size,
                         double max_error, const Quality& base, double& measured) {
     ChoiceOptions how{.base = base};
-    how.base.check_rays = 0;  // the chosen one's order is proved once
+    how.base.check_neighbours = false;  // the chosen one's order is proved once
+    how.base.check_rays = 0;
     how.draws = [backend, &scene](const Quality& quality) {
-        return draws(backend, quality, fields_read(scene)) && (!has_surfaces(scene) || takes_surfaces(quality.method)) &&
-               !(DepthWindow::is_needed(scene) && light_at_vertices(quality.method));  // which knows no place in a segment
+        return draws(backend, quality, fields_read(scene)) && (!has_surface_scene(scene) || takes_surfaces(quality.method)) &&
+               !(ray_cuts(scene).any() && light_at_vertices(quality.method));  // which knows no place in a segment
     };
     const QualityChoice choice = [&] {
         const Progress progress("choosing a method");
@@ -220,7 +220,7 @@ LoadedScene load(const RenderOptions& options, DrawnAs drawn_as, const GridQuali
     LoadedScene loaded = load_scene(options.scene, drawn_as);
     if (!loaded.hierarchy) return loaded;
     try {
-        require_hierarchy_drawn(backend, quality, options.scene.iso.any());
+        require_hierarchy_drawn(options.scene, backend, quality);
         return loaded;
     } catch (const Error&) {
         const bool slabs = quality.sampling.cut != GridSampling::Cut::cells;
@@ -237,6 +237,7 @@ void render_pictures(const RenderOptions& options) {
                     .order = order_method(options.order),  // nothing: auto, pixel
                     .order_per_pixel = options.order == "pixel",
                     .surfaces = parse_surface_method(options.iso_method, "--iso-method"),
+                    .check_neighbours = options.verify_order || !options.stats.empty(),
                     .check_rays = options.verify_order ? rays_of_proof : 0};
     const FieldsRead fields = options.scene.fields();
     const GridSampling sampling = parse_grid_sampling(options.sampling, "--sampling");
@@ -244,7 +245,7 @@ void render_pictures(const RenderOptions& options) {
     const Gpu gpu = depends_on_gpu(wish) ? find_gpu() : Gpu{};
     const ChosenBackend grid_backend = choose_grid_backend(wish, sampling, gpu);
     const DrawnAs drawn_as =
-        choose_drawn_as(options.scene, {grid_backend.backend, quality, sampling, options.order != "auto"});
+        choose_drawn_as(options.scene, {grid_backend.backend, quality, sampling, options.max_error.has_value(), options.order != "auto"});
     const ChosenBackend mesh_backend = drawn_as == DrawnAs::grid ? grid_backend : choose_backend(wish, quality, fields, gpu);
     require_writable_image(options.output);
     const std::shared_ptr<const Font> font = require_annotated(options.annotations, options.output, size);
@@ -307,6 +308,7 @@ void render_pictures(const RenderOptions& options) {
         for (const std::string& surface : options.scene.iso.surfaces)
             text["cellproj isosurfaces"] += "--iso " + surface + " ";
         if (options.scene.iso.any()) text["cellproj isosurfaces"] += "--shading " + options.scene.iso.shading;
+        if (options.scene.iso.shade_volume) text["cellproj volume"] = "--shade-volume --shading " + options.scene.iso.shading;
         if (const std::string cuts = text_of(options.scene.cuts); !cuts.empty()) text["cellproj cuts"] = cuts;
         if (!annotator.note().empty()) text["cellproj note"] = annotator.note();
         warn(image, statistics, file);
@@ -367,7 +369,10 @@ void add_render_command(CLI::App& app) {
                       "Prove the order of every picture: relations of neighbours, and the sequence of cells along 4096 pixels' rays");
     command->add_flag("--explain", options->explain, "Say what was chosen for the picture and why: backend, cells, order, method and more");
     command->add_option("--stats", options->stats, "Write times and counts of every picture (JSON); /dev/stdout prints them");
-    command->callback([options] { render_pictures(*options); });
+    command->callback([options] {
+        require_something_in_volume(options->scene.iso, !options->scene.cuts.slices.empty());
+        render_pictures(*options);
+    });
 }
 
 }  // namespace cellproj::cli

@@ -124,14 +124,16 @@ void check_colors(const SceneOptions& options) {
     }
 }
 
-// Isosurfaces alone are what is asked for unless something tells of the volume around them: its colours are then theirs.
+// Their colours are those of the volume, drawn or not.
 void add_surfaces(const SceneOptions& options, Scene& scene) {
     auto surfaces = std::make_shared<const SurfaceScene>(parse_surfaces(options.iso, *scene.transfer));
     warn_of_missing(surfaces->isosurfaces, *scene.field);
     scene.surfaces = std::move(surfaces);
-    if (options.iso.volume || options.opacity_chosen) return;
-    const TransferFunction nothing(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}});
-    scene.transfer = std::make_shared<const TransferFunction>(nothing);
+}
+
+// Isosurfaces and slices alone are what is asked for unless something tells of the volume around them.
+bool draws_volume(const SceneOptions& options) {
+    return (!options.iso.any() && options.cuts.slices.empty()) || options.iso.volume || options.iso.shade_volume || options.opacity_chosen;
 }
 
 // Cell fields are exact as constants; averaged to the points they look smooth.
@@ -161,9 +163,11 @@ ImageSize require_possible(const SceneOptions& options) {
     check_colors(options);
     parse_surfaces(options.iso, TransferFunction(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}}));
     parse_region(options.cuts);
+    parse_slices(options.cuts);
+    if (options.cuts.caps && options.cuts.planes.empty() && options.cuts.box.empty())
+        throw Error({ErrorKind::option, "--caps", "a clip region to be closed", "none", "give --clip or --clip-box"});
     for (const std::string& surface : options.cuts.surfaces) parse_body(surface);
-    if (!options.iso.light.empty() && !options.iso.any() && options.cuts.surfaces.empty())
-        throw Error({ErrorKind::option, "--light", "isosurfaces or bodies to be lit", "none", "give --iso or --surface"});
+    require_shaded(options.iso, !options.cuts.surfaces.empty());
     return parse_size(options.size);
 }
 
@@ -185,10 +189,12 @@ LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as) {
                 .field = field,
                 .transfer = choose_transfer(options, input, volume, *field, opacity.get()),
                 .opacity_field = opacity};
-    if (options.iso.any()) add_surfaces(options, scene);
-    add_cuts(options.cuts, parse_lighting(options.iso), scene);
+    if (options.iso.any_shaded()) add_surfaces(options, scene);
+    add_cuts(options.cuts, parse_lighting(options.iso), scene.transfer, regular.get(), scene);
+    if (!draws_volume(options))
+        scene.transfer = std::make_shared<const TransferFunction>(OpticalModel::density, std::vector<ColorNode>{{0, glm::dvec3(0)}}, std::vector<ExtinctionNode>{{0, 0}});
     std::optional<GridScene> grid;
-    if (regular) grid = GridScene{std::move(regular), scene.transfer, scene.surfaces};
+    if (regular) grid = GridScene{std::move(regular), scene.transfer, scene.surfaces, scene.clip, scene.bodies, scene.slices};
     std::optional<HierarchyScene> hierarchy;
     if (pieces) hierarchy = HierarchyScene{std::move(pieces), scene.transfer};
     return {std::move(input), std::move(scene), std::move(grid), std::move(hierarchy)};

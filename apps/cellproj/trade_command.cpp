@@ -79,14 +79,14 @@ Truths find_truths(const TradeCommandOptions& options, const TradeJudge& judge, 
 
 // Whether a regular grid is drawn as it is; whether it can be, turns out per way.
 DrawnAs drawn_as(const TradeCommandOptions& options) {
-    return choose_drawn_as(options.scene, {Backend::cpu, {}, {}, false});
+    return choose_drawn_as(options.scene, {Backend::cpu, {}, {}, false, false});
 }
 
 // A hierarchy of grids with isosurfaces as tetrahedra: its renderer knows none.
 LoadedScene load(const TradeCommandOptions& options, DrawnAs drawn) {
     LoadedScene loaded = load_scene(options.scene, drawn);
     if (!loaded.hierarchy || !options.scene.iso.any()) return loaded;
-    if (drawn == DrawnAs::grid) require_hierarchy_drawn(Backend::cpu, {}, true);
+    if (drawn == DrawnAs::grid) require_hierarchy_drawn(options.scene, Backend::cpu, {});
     return load_scene(options.scene, DrawnAs::tets);
 }
 
@@ -168,6 +168,7 @@ void add_trade_command(CLI::App& app) {
     command->add_option("--csv", options->csv, "Write the table as CSV");
     command->add_option("--json", options->json, "Write the table as JSON");
     command->callback([options] {
+        require_something_in_volume(options->scene.iso, false);
         options->choices.wish = parse_backend(options->backend);
         if (depends_on_gpu(options->choices.wish)) options->choices.gpu = find_gpu();
         run_trade(*options);

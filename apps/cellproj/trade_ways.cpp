@@ -43,9 +43,10 @@ Backend backend_for(const SceneOptions& scene, const TradeChoices& choices, cons
 
 // Those that can draw the scene.
 std::vector<Quality> possible_qualities(const SceneOptions& scene, const TradeChoices& choices) {
-    std::vector<Quality> qualities = scene.iso.any() ? surface_qualities() : trade_qualities();
+    std::vector<Quality> qualities = scene.iso.any_shaded() ? surface_qualities() : trade_qualities();
     std::erase_if(qualities, [&](const Quality& quality) {
-        return !draws(backend_for(scene, choices, quality), quality, scene.fields());
+        return !draws(backend_for(scene, choices, quality), quality, scene.fields()) ||
+               (!scene.iso.any() && quality.surfaces.kind != SurfaceMethodKind::exact);
     });
     return qualities;
 }
@@ -185,7 +186,7 @@ TradeSubject hierarchy_subject(const SceneOptions& options, const LoadedScene& l
         for (const char* method : {"average", "homogeneous", "preint2d-exp:256", "integral", "exact:1e-3", "exact:1e-5"}) methods.push_back(parse_method(method));
     } else {
         for (const GridQuality& quality : chosen_qualities(choices, qualities)) {
-            require_hierarchy_drawn(choices.wish == BackendWish::automatic ? Backend::cpu : grid_backends(choices).back(), quality, options.iso.any());
+            require_hierarchy_drawn(options, choices.wish == BackendWish::automatic ? Backend::cpu : grid_backends(choices).back(), quality);
             methods.push_back(quality.method);
         }
     }

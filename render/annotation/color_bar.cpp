@@ -68,14 +68,6 @@ double path_of(double densest) {
     return power * (5 * power <= most ? 5 : 2 * power <= most ? 2 : 1);
 }
 
-// What counts as 1 in the bar.
-double brightest_of(const TransferFunction& transfer) {
-    if (transfer.model() == OpticalModel::density) return 1;
-    double brightest = 0;
-    for (const ColorNode& node : transfer.color_nodes()) brightest = std::max({brightest, node.color.x, node.color.y, node.color.z});
-    return brightest > 0 ? brightest : 1;
-}
-
 // The range takes in all isovalues: each has its band.
 void add_surfaces(const Scene& scene, ColorBar& bar) {
     if (!scene.surfaces || scene.surfaces->isosurfaces.surfaces().empty()) return;
@@ -96,13 +88,28 @@ void describe_one_field(const Scene& scene, ColorBar& bar) {
     bar.low = transfer.breakpoints().front();
     bar.high = transfer.breakpoints().back();
     add_surfaces(scene, bar);
-    const bool hidden_below = hides(transfer, transfer.pieces().front()), hidden_above = hides(transfer, transfer.pieces().back());
+    // Slices are opaque, whatever the extinction is.
+    const bool clamped = scene.slices && transfer.outside() == Outside::clamp;
+    const bool hidden_below = !clamped && hides(transfer, transfer.pieces().front()), hidden_above = !clamped && hides(transfer, transfer.pieces().back());
     const auto [below, above] = shares_beyond(scene.field->values, bar.low, bar.high);
     bar.below = beyond(below, hidden_below);
     bar.above = beyond(above, hidden_above);
     bar.note = note_of(*scene.field, bar.low, bar.high, fate(hidden_below, bar.low), fate(hidden_above, bar.high));
     const double densest = transfer.max_extinction(bar.low, bar.high);
     if (densest > 0) bar.path = path_of(densest);
+}
+
+// Slices alone, or with isosurfaces: the function is that of their colours.
+void describe_slices(const Scene& scene, ColorBar& bar) {
+    const TransferFunction& colors = *bar.transfer;
+    bar.low = colors.color_nodes().front().scalar;
+    bar.high = colors.color_nodes().back().scalar;
+    add_surfaces(scene, bar);
+    const bool hidden = colors.outside() == Outside::transparent;
+    const auto [below, above] = shares_beyond(scene.field->values, bar.low, bar.high);
+    bar.below = beyond(below, hidden);
+    bar.above = beyond(above, hidden);
+    bar.note = note_of(*scene.field, bar.low, bar.high, fate(hidden, bar.low), fate(hidden, bar.high));
 }
 
 void describe_two_fields(const Scene& scene, ColorBar& bar) {
@@ -203,13 +210,15 @@ double ColorBar::opacity(double a, double b) const { return path ? opacity_of_de
 
 ColorBar describe_color_bar(const Scene& scene, const std::string& units, ScalarAxis axis) {
     ColorBar bar{};
-    bar.transfer = scene.transfer;
-    bar.brightest = brightest_of(*scene.transfer);
-    bar.name = units.empty() ? scene.field->name : scene.field->name + " [" + units + "]";
     // Without a medium the function is no more than what the interface asks for.
     const double everything = std::numeric_limits<double>::max();
-    bar.medium = !scene.surfaces || scene.transfer->visible(-everything, everything);
+    const bool medium = (!scene.surfaces && !scene.slices) || scene.transfer->visible(-everything, everything);
+    bar.transfer = scene.slices && !medium ? scene.slices->colors : scene.transfer;
+    bar.brightest = color_scale(*bar.transfer);
+    bar.name = units.empty() ? scene.field->name : scene.field->name + " [" + units + "]";
+    bar.medium = medium || scene.slices;
     !bar.medium           ? describe_surfaces_alone(scene, bar)
+    : !medium             ? describe_slices(scene, bar)
     : scene.opacity_field ? describe_two_fields(scene, bar)
                           : describe_one_field(scene, bar);
     bar.axis = bar.low >= 1e-300 && bar.high <= 1e300 ? axis : ScalarAxis::linear;

@@ -34,7 +34,7 @@ struct ColorBar {
     ScalarAxis axis;   // what the length of the bar is divided by; linear where `low` is not above 0
     std::string name;  // of the field, with its units
     Beyond below, above;
-    bool medium;                       // false: surfaces alone; the range is then that of the field
+    bool medium;                       // or slices. False: isosurfaces alone; the range is then that of the field
     std::vector<IsoSurface> surfaces;  // each a band of its colour; the range takes in their values
     std::string note;  // which values lie beyond the ends and what becomes of them; empty: none
     // Of the opacity curve [mesh units], 1, 2 or 5 times a power of ten: the largest for which the function's densest scalar has an optical

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "render/cpu/grid_bend.hpp"
 #include "render/cpu/grid_kernels.hpp"
 #include "render/cpu/grid_volume.hpp"
+#include "render/depth_window.hpp"
 #include "render/grid_plan.hpp"
 #include "render/grid_surfaces.hpp"
 
@@ -47,7 +49,7 @@ private:
     void prepare_here(const GridScene& scene, const GridQuality& quality);
     Image render_here(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality, Statistics* out);
     void set_surfaces();
-    std::size_t draw(Image& image, const ScreenTransform& transform) const;
+    std::size_t draw(Image& image, const ScreenTransform& transform, std::span<const DepthInterval> kept) const;
 
     oneapi::tbb::task_arena arena_;
     GridScene scene_;
@@ -107,7 +109,10 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.ms.plan = total.ms();
     Image image(size.width, size.height);
     const Stopwatch drawing;
-    statistics.counts.fragments = draw(image, ScreenTransform(camera, size));
+    std::optional<DepthWindow> window;
+    if (ray_cuts(scene).any()) window.emplace(scene, camera, size, volume_->units().length);
+    statistics.counts.fragments = draw(image, ScreenTransform(camera, size), window ? window->pixels() : std::span<const DepthInterval>{});
+    if (window) window->add_opaque(image);
     statistics.ms.draw = drawing.ms();
     statistics.ms.total = total.ms();
     if (!out) return image;
@@ -128,7 +133,7 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
 }
 
 // Each tile by one task: the same picture for any number of threads. Returns the number of segments.
-std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform) const {
+std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform, std::span<const DepthInterval> kept) const {
     const GridCells cells = volume_->cells();
     Shading shading = classification_->shading();
     if (!classification_->may_be_opaque() && surfaces_.count == 0) shading.opaque = 1.0F;
@@ -141,7 +146,7 @@ std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform
             const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
                             static_cast<std::size_t>(image.width)};
             GridRays rays;
-            volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, rays);
+            volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, kept, rays);
             segments += draw_grid_tile(cells, surfaces_.count > 0 ? &surfaces_ : nullptr, rays, shading, bend_, tile);
         },
         oneapi::tbb::simple_partitioner());

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,12 @@
 namespace cellproj::cpu {
 
 namespace {
+
+// The region of a picture whose first pixel is (x, y).
+Region region_at(ImageSize size, int x, int y) {
+    constexpr int side = region_side * tile_side;
+    return {x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
+}
 
 class CpuRenderer : public Renderer {
 public:
@@ -50,6 +57,22 @@ private:
     void prepare_here(const Scene& scene, const Quality& quality);
     Image render_here(const Scene& scene, const Camera& camera, ImageSize size, const Quality& quality, Statistics* out);
     using Drawing = Plan::Drawing;
+    // What one picture is of.
+    struct Frame {
+        const Scene& scene;
+        const Camera& camera;
+        ImageSize size;
+        Plan plan;
+    };
+    struct SortedCells {
+        ViewOrder order;
+        OrderReport report;
+    };
+    std::span<const CellId> drawn_cells(const Plan& plan) const;
+    std::optional<DepthWindow> window_of(const Frame& frame) const;
+    std::optional<DepthWindow> sort_cells(const Frame& frame, const Quality& quality, SortedCells& sorted, Statistics& statistics);
+    std::span<const std::uint32_t> items_of(const Frame& frame, ViewOrder& order, const std::optional<DepthWindow>& window, Statistics& statistics);
+    void draw_regions(Image& image, const Plan& plan, std::span<const std::uint32_t> items, Statistics& statistics);
     void prepare_method(const Method& method, const TransferFunction& transfer, bool same_transfer);
     void describe(Statistics& statistics, const Quality& quality, const Plan& plan) const;
     void set_windows(const DepthWindow& window);
@@ -118,80 +141,94 @@ Image CpuRenderer::render_here(const Scene& scene, const Camera& camera, ImageSi
     Statistics statistics;
     const Stopwatch total;
     prepare_here(scene, quality);
-    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, DepthWindow::is_needed(scene), rules_);
+    const Frame frame{scene, camera, size, plan_view(plan_, prepared_->facts(), camera, size, ray_cuts(scene), rules_)};
     Image image(size.width, size.height);
     statistics.ms.plan = total.ms();
-    if (plan.drawing == Drawing::nothing) {
-        if (DepthWindow::is_needed(scene)) DepthWindow(scene, camera, size, prepared_->units().length).add_bodies(image);
-        statistics.ms.total = total.ms();
-        describe(statistics, quality, plan);
-        if (out) *out = std::move(statistics);
-        return image;
+    SortedCells sorted;
+    if (frame.plan.drawing == Drawing::nothing) {
+        if (const auto window = window_of(frame)) window->add_opaque(image);
+    } else {
+        const std::optional<DepthWindow> window = sort_cells(frame, quality, sorted, statistics);
+        const auto items = items_of(frame, sorted.order, window, statistics);
+        draw_regions(image, frame.plan, items, statistics);
+        if (window) window->add_opaque(image);
     }
+    statistics.ms.total = total.ms();
+    if (!out) return image;
 
-    const auto region_at = [&](int x, int y) {
-        constexpr int side = region_side * tile_side;
-        return Region{x, y, std::min(side, size.width - x), std::min(side, size.height - y)};
-    };
-    const Region first = region_at(0, 0);
+    describe(statistics, quality, frame.plan);
+    if (frame.plan.drawing == Drawing::by_cells) {  // the proof of the order is no part of the frame
+        prepared_->judge(sorted.order, sorted.report, camera, size, quality, statistics);
+        tell_order(statistics.plan, statistics.order, statistics.order_exact);
+    }
+    *out = std::move(statistics);
+    return image;
+}
 
-    // Points and boxes do not depend on the order: they are found beside it, where part of a sort leaves cores idle.
-    const Stopwatch sort;
-    OrderReport order_report;
-    ViewOrder order;
-    const Drawing drawing = plan.drawing;
+// The cells that a picture looks at; none stands for all. Of surfaces alone, what they do not cross is not looked at.
+std::span<const CellId> CpuRenderer::drawn_cells(const Plan& plan) const {
+    return plan.drawing == Drawing::nearest_surfaces ? prepared_->surfaces()->crossed() : std::span<const CellId>();
+}
+
+std::optional<DepthWindow> CpuRenderer::window_of(const Frame& frame) const {
+    if (!ray_cuts(frame.scene).any()) return {};
+    return DepthWindow(frame.scene, frame.camera, frame.size, prepared_->units().length);
+}
+
+// Points and boxes do not depend on the order: they are found beside it, where part of a sort leaves cores idle, as is what cuts rays.
+std::optional<DepthWindow> CpuRenderer::sort_cells(const Frame& frame, const Quality& quality, SortedCells& sorted, Statistics& statistics) {
+    const Stopwatch watch;
     std::optional<DepthWindow> window;
     oneapi::tbb::parallel_invoke(
         [&] {
             // Pixels that sort their own fragments want cells nearly sorted, no more.
-            const auto method = drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order;
-            if (plan.sorts()) order = prepared_->order(camera, size, method, &order_report);
+            const auto method = frame.plan.drawing == Drawing::by_pixels ? OrderMethod::centroid : quality.order;
+            if (frame.plan.sorts()) sorted.order = prepared_->order(frame.camera, frame.size, method, &sorted.report);
         },
         [&] {
-            mesh_.set_view(camera, size);
-            bins_.find_cells(mesh_.cells(), first);
+            const bool nearest = frame.plan.drawing == Drawing::nearest_surfaces;
+            mesh_.set_view(frame.camera, frame.size, nearest ? prepared_->surfaces()->crossed_points() : std::span<const VertexId>());
+            bins_.find_cells(mesh_.cells(), region_at(frame.size, 0, 0), drawn_cells(frame.plan));
         },
-        [&] {
-            if (DepthWindow::is_needed(scene)) window.emplace(scene, camera, size, prepared_->units().length);
-        });
-    statistics.ms.sort = sort.ms();
+        [&] { window = window_of(frame); });
+    statistics.ms.sort = watch.ms();
+    return window;
+}
 
-    const Stopwatch projecting;
-    if (drawing == Drawing::sum) order = prepared_->any_order();
+// What is to be drawn, in its order; without a sort, one that takes no time.
+std::span<const std::uint32_t> CpuRenderer::items_of(const Frame& frame, ViewOrder& order, const std::optional<DepthWindow>& window,
+                                                     Statistics& statistics) {
+    const Stopwatch watch;
+    const Plan& plan = frame.plan;
+    if (plan.drawing == Drawing::sum) order = prepared_->any_order();
     if (plan.blends() && !plan.sorts()) order.items = mesh_.nearly_sorted(prepared_->any_order().items);
     // In any order; nearly sorted ones hide most of each other.
-    if (drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(prepared_->surfaces()->crossed());
+    if (plan.drawing == Drawing::nearest_surfaces) order.items = mesh_.nearly_sorted(drawn_cells(plan));
     const auto items = mesh_.cut(order);
     extra_drawn_.assign(mesh_.extra_cells().size(), 0);
-    if (prepared_->surfaces()) trails_.assign(image.pixels.size(), {});
+    const std::size_t pixels = static_cast<std::size_t>(frame.size.width) * static_cast<std::size_t>(frame.size.height);
+    if (prepared_->surfaces()) trails_.assign(pixels, {});
     windows_.clear();
     if (window) set_windows(*window);
-    statistics.ms.project = projecting.ms();
+    statistics.ms.project = watch.ms();
+    return items;
+}
 
+void CpuRenderer::draw_regions(Image& image, const Plan& plan, std::span<const std::uint32_t> items, Statistics& statistics) {
+    const ImageSize size{image.width, image.height};
+    const Region first = region_at(size, 0, 0);
     for (int y = 0; y < size.height; y += first.height)
         for (int x = 0; x < size.width; x += first.width) {
-            const Region region = region_at(x, y);
-            bins_.begin(mesh_.cells(), region, items, extra_drawn_, plan.blends() && may_be_opaque());
-            draw(image, region, drawing, statistics);
+            const Region region = region_at(size, x, y);
+            bins_.begin(mesh_.cells(), region, items, extra_drawn_, plan.blends() && may_be_opaque(), drawn_cells(plan));
+            draw(image, region, plan.drawing, statistics);
             statistics.counts.drawn += bins_.drawn();
         }
-    if (window) window->add_bodies(image);
-    statistics.ms.total = total.ms();
-
-    std::vector<CellId> parts;
+    std::vector<CellId> cut_cells;  // each once, of however many parts
     for (std::size_t i = 0; i < extra_drawn_.size(); ++i)
-        if (extra_drawn_[i]) parts.push_back(mesh_.extra_cells()[i]);
-    std::sort(parts.begin(), parts.end());
-    statistics.counts.drawn += static_cast<std::size_t>(std::unique(parts.begin(), parts.end()) - parts.begin());
-    describe(statistics, quality, plan);
-    if (out) {  // the proof of the order is no part of the frame
-        if (drawing == Drawing::by_cells) {
-            prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
-            tell_order(statistics.plan, statistics.order, statistics.order_exact);
-        }
-        *out = std::move(statistics);
-    }
-    return image;
+        if (extra_drawn_[i]) cut_cells.push_back(mesh_.extra_cells()[i]);
+    std::sort(cut_cells.begin(), cut_cells.end());
+    statistics.counts.drawn += static_cast<std::size_t>(std::unique(cut_cells.begin(), cut_cells.end()) - cut_cells.begin());
 }
 
 // What is known without the order of cells.

@@ -18,6 +18,8 @@ namespace cellproj::cpu {
 
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 constexpr std::size_t brick_side = 4;     // cells, and bricks of the level below
 constexpr std::size_t function_bins = 1024;  // of the scalars, in which the transfer function shows something or not
 
@@ -200,7 +202,8 @@ GridCells GridVolume::cells() const {
 
 // In float64: a far eye and a far origin of the coordinates cost the kernels no digits. Rays are affine over the screen:
 // in parallel views their origins, in perspective their directions, when these reach equally far along the axis of the view.
-void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int width, int height, GridRays& rays) const {
+void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int width, int height, std::span<const DepthInterval> window,
+                           GridRays& rays) const {
     const bool perspective = transform.perspective();
     const glm::dvec3 forward = transform.ray(transform.principal_point()).direction;
     const auto ray_at = [&](double px, double py) {
@@ -210,17 +213,23 @@ void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int w
     const glm::dvec3 first = ray_at(0.5, 0.5), per_column = (ray_at(width + 0.5, 0.5) - first) / double(width),
                      per_row = (ray_at(0.5, height + 0.5) - first) / double(height);
     const glm::dvec3 eye = transform.ray({x + 0.5, y + 0.5}).origin;
+    const auto columns = static_cast<std::size_t>(transform.size().width);
     for (int row = 0; row < height; ++row)
         for (int column = 0; column < width; ++column) {
             const glm::dvec3 place = first + double(column) * per_column + double(row) * per_row;
-            find_ray(perspective ? eye : place, perspective ? place : forward, perspective, static_cast<std::size_t>(tile_side * row + column), rays);
+            // Lengths along these directions are depths.
+            DepthInterval kept{perspective ? 0.0 : -infinity, infinity};
+            if (!window.empty()) {
+                const DepthInterval& pixel = window[static_cast<std::size_t>(y + row) * columns + static_cast<std::size_t>(x + column)];
+                kept = {std::max(kept.near, pixel.near * units_.length), std::min(kept.far, pixel.far * units_.length)};
+            }
+            find_ray(perspective ? eye : place, perspective ? place : forward, kept, static_cast<std::size_t>(tile_side * row + column), rays);
         }
 }
 
 // `direction` of any length.
-void GridVolume::find_ray(const glm::dvec3& origin, const glm::dvec3& direction, bool from_origin, std::size_t pixel, GridRays& rays) const {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    double enter = from_origin ? 0.0 : -infinity, leave = infinity;
+void GridVolume::find_ray(const glm::dvec3& origin, const glm::dvec3& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const {
+    double enter = kept.near, leave = kept.far;
     for (int a = 0; a < 3; ++a) {
         const Axis& axis = axes_[static_cast<std::size_t>(a)];
         const double d = direction[a], to_low = axis.low - origin[a], to_high = axis.high - origin[a];

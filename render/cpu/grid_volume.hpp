@@ -6,11 +6,13 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "classify/transfer_function.hpp"
 #include "project/camera.hpp"
 #include "render/cpu/grid_kernels.hpp"
+#include "render/depth_window.hpp"
 #include "render/grid_scene.hpp"
 
 namespace cellproj::cpu {
@@ -33,8 +35,9 @@ public:
     std::size_t empty_cells() const { return empty_cells_; }  // in them, or blanked
 
     GridCells cells() const;
-    // The part of the pixels' rays inside the grid. Pixel (x, y) is the tile's first one.
-    void find_rays(const ScreenTransform& transform, int x, int y, int width, int height, GridRays& rays) const;
+    // The part of the pixels' rays inside the grid. Pixel (x, y) is the tile's first one. `window`: what of the picture's rays is kept, row
+    // by row [GridUnits::length]; none: all.
+    void find_rays(const ScreenTransform& transform, int x, int y, int width, int height, std::span<const DepthInterval> window, GridRays& rays) const;
 
 private:
     struct Range {
@@ -50,7 +53,7 @@ private:
     };
 
     void find_ranges(const Grid& grid);
-    void find_ray(const glm::dvec3& origin, const glm::dvec3& direction, bool from_origin, std::size_t pixel, GridRays& rays) const;
+    void find_ray(const glm::dvec3& origin, const glm::dvec3& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const;
 
     GridUnits units_;
     double mean_chord_;

@@ -9,6 +9,9 @@
 #include <cstring>
 #include <optional>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu/kernels.cpp"
 #include "render/cpu/instruction_sets.hpp"
@@ -19,11 +22,13 @@
 
 #include "render/cpu/segment_light-inl.hpp"
 #include "render/cpu/table_light-inl.hpp"
+#include "render/cpu/pack_lanes-inl.hpp"
 #include "render/cpu/cell_planes-inl.hpp"
 #include "render/cpu/window_drawing-inl.hpp"
 #include "render/cpu/tile_drawing-inl.hpp"
 #include "render/cpu/reflection-inl.hpp"
 #include "render/cpu/surface_light-inl.hpp"
+#include "render/cpu/medium_light-inl.hpp"
 #include "render/cpu/surface_drawing-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -68,6 +73,11 @@ private:
 void FindBoxes(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, TileBox* boxes) {
     const BoxFinder finder(cells, region);
     for (std::size_t item = first; item < end; ++item) boxes[item] = finder.of(static_cast<std::uint32_t>(item));
+}
+
+void FindBoxesOf(const ScreenCells& cells, const Region& region, const std::uint32_t* items, std::size_t count, TileBox* boxes) {
+    const BoxFinder finder(cells, region);
+    for (std::size_t i = 0; i < count; ++i) boxes[items[i]] = finder.of(items[i]);
 }
 
 // Where nothing of a ray is kept, its pixel is closed. False where that is so of all.
@@ -181,6 +191,7 @@ HWY_AFTER_NAMESPACE();
 namespace cellproj::cpu {
 
 HWY_EXPORT(FindBoxes);
+HWY_EXPORT(FindBoxesOf);
 HWY_EXPORT(DrawTile);
 HWY_EXPORT(DrawTileByPixels);
 HWY_EXPORT(DrawNearestSurfaces);
@@ -189,6 +200,10 @@ HWY_EXPORT(LightOfSegments);
 void find_boxes(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, std::span<TileBox> boxes) {
     assert(end <= boxes.size());
     HWY_DYNAMIC_DISPATCH(FindBoxes)(cells, region, first, end, boxes.data());
+}
+
+void find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, std::span<TileBox> boxes) {
+    HWY_DYNAMIC_DISPATCH(FindBoxesOf)(cells, region, items.data(), items.size(), boxes.data());
 }
 
 std::size_t draw_tile(const ScreenCells& cells, const Shading& shading, const Tile& tile, std::span<const std::uint32_t> items) {

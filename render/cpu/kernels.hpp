@@ -83,6 +83,8 @@ struct Region {
 
 // The boxes of items first .. end − 1, into boxes[item]; empty for cells that are not visible.
 void find_boxes(const ScreenCells& cells, const Region& region, std::size_t first, std::size_t end, std::span<TileBox> boxes);
+// The same of these items alone.
+void find_boxes(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items, std::span<TileBox> boxes);
 
 // How a segment becomes light: by the pieces of the transfer function or by the tables of a method, one of both.
 struct Shading {
@@ -116,7 +118,7 @@ struct SurfaceEnds {
     std::uint32_t item;
     std::int32_t level_front, level_back;        // of its scalars (PreparedSurfaces)
     float near_front, near_back;                 // whole nearness
-    glm::vec3 gradient_front, gradient_back;     // for normals, where both levels differ
+    glm::vec3 gradient_front, gradient_back;     // for normals, where both levels differ or the medium is lit
 };
 
 // Fragments that wait until no cell can put one in front of them any more. Memory of a thread, kept from tile to tile.

@@ -51,10 +51,14 @@ HWY_INLINE void add_light(D d, const SurfaceLighting::Light& light, float expone
     const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
     const Direction<V> l1 = light.headlight ? eye : direction(d, light.towards);
     const V facing = dot(n, l1);
-    hn::Mask<D> has_middle;
-    const Direction<V> l2 = unit(d, Direction<V>{hn::Add(l1.x, eye.x), hn::Add(l1.y, eye.y), hn::Add(l1.z, eye.z)}, has_middle);
-    const V cosine = hn::Min(dot(n, l2), one);
-    const auto shines = hn::And(has_middle, hn::Gt(cosine, hn::Set(d, 1e-30F)));
+    V cosine = facing;  // with the middle between the light and the eye
+    if (!light.headlight) {
+        hn::Mask<D> has_middle;
+        const Direction<V> l2 = unit(d, Direction<V>{hn::Add(l1.x, eye.x), hn::Add(l1.y, eye.y), hn::Add(l1.z, eye.z)}, has_middle);
+        cosine = hn::IfThenElseZero(has_middle, dot(n, l2));
+    }
+    cosine = hn::Min(cosine, one);
+    const auto shines = hn::Gt(cosine, hn::Set(d, 1e-30F));
     const V power = hn::Mul(hn::Log(d, hn::IfThenElse(shines, cosine, one)), hn::Set(d, exponent));
     const V highlight = hn::IfThenElseZero(shines, hn::Exp(d, hn::Max(power, hn::Set(d, -100.0F))));
     const auto lit = hn::Gt(facing, zero);

@@ -64,10 +64,12 @@ void ScreenMesh::set_surfaces() {
     if (!prepared) return;
     const SurfaceScene& scene = prepared->scene();
     surfaces_.values = prepared->values();
-    surfaces_.materials = materials_of(scene.isosurfaces);
+    surfaces_.rising = run_of(*prepared, true);
+    surfaces_.falling = run_of(*prepared, false);
     surfaces_.shading = scene.shading;
     surfaces_.lighting = kernel_lighting(scene.lighting);
     surfaces_.medium = prepared_->has_medium();
+    surfaces_.lit_medium = prepared_->lights_medium();
     levels_.assign(prepared->levels().begin(), prepared->levels().end());
     gradients_.assign(prepared->gradients().begin(), prepared->gradients().end());
 }
@@ -78,7 +80,7 @@ void ScreenMesh::set_visible() {
     cells_.visible = all ? std::span<const std::uint8_t>() : std::span(visible);
 }
 
-void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
+void ScreenMesh::set_view(const Camera& camera, ImageSize size, std::span<const VertexId> points) {
     const TetMesh& mesh = *prepared_->scene().mesh;
     const double unit = prepared_->units().length;
     eye_ = camera.eye;
@@ -108,9 +110,10 @@ void ScreenMesh::set_view(const Camera& camera, ImageSize size) {
     }
     std::atomic<bool> near_points = false;
     using Range = oneapi::tbb::blocked_range<std::size_t>;
-    oneapi::tbb::parallel_for(Range(0, mesh.points.size(), 4096), [&](const Range& range) {
+    oneapi::tbb::parallel_for(Range(0, points.empty() ? mesh.points.size() : points.size(), 4096), [&](const Range& range) {
         bool behind = false;
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        for (std::size_t number = range.begin(); number != range.end(); ++number) {
+            const std::size_t i = points.empty() ? number : points[number];
             const glm::dvec3 place = transform_.to_eye((mesh.points[i] - eye_) / unit);
             if (precise && has_place(place)) {
                 precise_points_[i] = precisely_on_screen(place);

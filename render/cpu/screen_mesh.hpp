@@ -33,8 +33,8 @@ public:
     // Isosurfaces (PreparedScene::surfaces), or whether there is a medium around them, may have changed.
     void set_surfaces();
 
-    // All points as a camera sees them. set_scene came before.
-    void set_view(const Camera& camera, ImageSize size);
+    // All points as a camera sees them, or only these, where cells with others are not drawn. set_scene came before.
+    void set_view(const Camera& camera, ImageSize size, std::span<const VertexId> points = {});
     // These cells nearly back to front: by the depth of one corner each, in a thousand steps. Valid until the next call. set_view came before.
     std::span<const std::uint32_t> nearly_sorted(std::span<const CellId> cells);
 

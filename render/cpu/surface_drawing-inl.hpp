@@ -26,6 +26,7 @@ struct SurfaceTile {
     PixelTrail trails[tile_side * tile_side];
     Fragments pieces;                       // what the segments are cut into
     std::int32_t hit[Fragments::capacity];  // that ends the piece: of `hits`, or −1
+    ShareLists shares, piece_shares;        // of fragments and pieces, where the medium is lit
     SurfaceHits hits;
     PreciseCell cell;                       // the one at hand, if it needs float64
 };
@@ -108,7 +109,7 @@ HWY_INLINE bool write_precisely(const ScreenCells& cells, const PreciseCell& cel
     ends.level_back = level_of(surfaces.values, s[1]);
     ends.near_front = static_cast<float>(near[0]);
     ends.near_back = static_cast<float>(near[1]);
-    if (ends.level_front == ends.level_back) return true;
+    if (ends.level_front == ends.level_back && !surfaces.lit_medium) return true;
     const glm::dvec2 p = place_of(tile, pixel);
     ends.gradient_front = gradient_on_face(surfaces, cell, item, face[0], p, perspective);
     ends.gradient_back = gradient_on_face(surfaces, cell, item, face[1], p, perspective);
@@ -194,6 +195,7 @@ HWY_NOINLINE void add_crossed_cell(D d, const ScreenCells& cells, const CellPlan
         ends.near_front = planes.base[k] + tile.hits.front[i - begin];
         ends.near_back = planes.base[k] + tile.hits.back[i - begin];
     }
+    if (cells.surfaces->lit_medium) set_gradients<perspective>(cells, tile, k, item, {tile.surfaces->ends + begin, f.count - begin});
 }
 
 // For pixels that sort their own fragments.
@@ -250,8 +252,9 @@ HWY_NOINLINE void composite_pieces(D d, const ScreenCells& cells, const Shading&
     HWY_ALIGN float light[4 * CellPlanes::columns] = {};
     if (s.pieces.count > 0) empty_last_vector(d, s.pieces);
     for (std::size_t begin = 0; begin < s.pieces.count; begin += lanes) {
-        const auto l = shade(d, shading, false, hn::Load(d, s.pieces.front + begin), hn::Load(d, s.pieces.back + begin),
-                             length_along_ray(d, cells.view, tile, s.pieces, begin));
+        auto l = shade(d, shading, false, hn::Load(d, s.pieces.front + begin), hn::Load(d, s.pieces.back + begin),
+                       length_along_ray(d, cells.view, tile, s.pieces, begin));
+        if (cells.surfaces->lit_medium) light_medium(d, s.piece_shares, begin, l);
         hn::StoreInterleaved4(l.r, l.g, l.b, l.opacity, d, light);
         for (std::size_t i = 0; i < HWY_MIN(lanes, s.pieces.count - begin); ++i) {
             const std::int32_t pixel = s.pieces.pixel[begin + i], hit = s.hit[begin + i];
@@ -266,22 +269,48 @@ HWY_NOINLINE void composite_pieces(D d, const ScreenCells& cells, const Shading&
 struct RayPiece {
     float front, back, length;
     std::int32_t pixel;
+    std::size_t fragment = 0;      // whose shares of light are those of the medium, at these places on its way
+    float begin = 0.0F, end = 1.0F;
     std::int32_t surface = -1;
     bool rising = false;
     glm::vec3 gradient = glm::vec3(0);
 };
 
-HWY_INLINE void add_hit(const ScreenSurfaces& surfaces, std::int32_t surface, bool rising, const glm::vec3& gradient, std::int32_t pixel,
-                        SurfaceHits& hits) {
-    const SurfaceMaterial& material = surfaces.materials[static_cast<std::size_t>(surface)];
-    const glm::vec3& color = rising ? material.front : material.back;
+HWY_INLINE void add_hit(const glm::vec4& layer, const glm::vec3& gradient, std::int32_t pixel, SurfaceHits& hits) {
     const std::size_t i = hits.count++;
     for (int k = 0; k < 3; ++k) {
         hits.gradient[k][i] = gradient[k];
-        hits.color[k][i] = color[k];
+        hits.color[k][i] = layer[k];
     }
-    hits.opacity[i] = material.opacity;
+    hits.opacity[i] = layer.a;
     hits.pixel[i] = pixel;
+}
+
+HWY_INLINE glm::vec4 layer_at(const SurfaceRun& run, std::size_t place) {
+    return {run.red[place], run.green[place], run.blue[place], run.opacity[place]};
+}
+
+HWY_INLINE glm::vec4 layer_of(const ScreenSurfaces& surfaces, std::int32_t surface, bool rising) {
+    return layer_at(rising ? surfaces.rising : surfaces.falling, surfaces.place(surface, rising));
+}
+
+// Its stretch of medium.
+template <class D>
+HWY_INLINE void add_medium(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, const RayPiece& piece) {
+    SurfaceTile& s = *tile.surfaces;
+    if (s.pieces.count == Fragments::capacity) composite_pieces(d, cells, shading, tile);
+    const std::size_t i = s.pieces.count++;
+    s.pieces.front[i] = piece.front;
+    s.pieces.back[i] = piece.back;
+    s.pieces.length[i] = piece.length;
+    s.pieces.pixel[i] = piece.pixel;
+    s.hit[i] = -1;
+    if (!cells.surfaces->lit_medium) return;
+    for (int channel = 0; channel < 3; ++channel) {
+        const float first = s.shares.front[channel][piece.fragment], change = s.shares.back[channel][piece.fragment] - first;
+        s.piece_shares.front[channel][i] = first + piece.begin * change;
+        s.piece_shares.back[channel][i] = first + piece.end * change;
+    }
 }
 
 template <class D>
@@ -290,19 +319,13 @@ HWY_INLINE void add_piece(D d, const ScreenCells& cells, const Shading& shading,
     if (!cells.surfaces->medium) {
         if (piece.surface < 0) return;
         if (s.hits.count == SurfaceHits::capacity) composite_pieces(d, cells, shading, tile);
-        add_hit(*cells.surfaces, piece.surface, piece.rising, piece.gradient, piece.pixel, s.hits);
+        add_hit(layer_of(*cells.surfaces, piece.surface, piece.rising), piece.gradient, piece.pixel, s.hits);
         return;
     }
-    if (s.pieces.count == Fragments::capacity) composite_pieces(d, cells, shading, tile);
-    const std::size_t i = s.pieces.count++;
-    s.pieces.front[i] = piece.front;
-    s.pieces.back[i] = piece.back;
-    s.pieces.length[i] = piece.length;
-    s.pieces.pixel[i] = piece.pixel;
-    s.hit[i] = -1;
+    add_medium(d, cells, shading, tile, piece);
     if (piece.surface < 0) return;
-    s.hit[i] = static_cast<std::int32_t>(s.hits.count);
-    add_hit(*cells.surfaces, piece.surface, piece.rising, piece.gradient, piece.pixel, s.hits);
+    s.hit[s.pieces.count - 1] = static_cast<std::int32_t>(s.hits.count);
+    add_hit(layer_of(*cells.surfaces, piece.surface, piece.rising), piece.gradient, piece.pixel, s.hits);
 }
 
 // Calls visit(surface, rising) for the surfaces between two levels in the order in which a ray meets them, while it says so.
@@ -336,11 +359,59 @@ HWY_NOINLINE void add_jump(D d, const ScreenCells& cells, const Shading& shading
     const bool rises = trail.level < ends.level_front;
     const glm::vec3 gradient = gradient_at_end(cells, rises ? trail.item : ends.item, p, !rises);
     for_each_crossing(trail.level, ends.level_front, [&](std::int32_t surface, bool rising) HWY_ATTR {
-        add_piece(d, cells, shading, tile, {0.0F, 0.0F, 0.0F, pixel, surface, rising, gradient});
-        const bool opaque = cells.surfaces->materials[static_cast<std::size_t>(surface)].opacity >= 1.0F;
+        add_piece(d, cells, shading, tile, {.front = 0.0F, .back = 0.0F, .length = 0.0F, .pixel = pixel, .surface = surface, .rising = rising, .gradient = gradient});
+        const bool opaque = cells.surfaces->is_opaque(surface);
         if (opaque) trail.level = PixelTrail::closed;
         return !opaque;
     });
+}
+
+// All surfaces in a fragment, where nothing lies between them and nothing is cut: vectors of them, so that many cost little more than few; in
+// one layer where one light falls on all. True behind an opaque one.
+template <class D>
+HWY_INLINE bool add_layers(D d, const ScreenCells& cells, const Shading& shading, TileState& tile, std::size_t fragment) {
+    SurfaceHits& hits = tile.surfaces->hits;
+    const ScreenSurfaces& surfaces = *cells.surfaces;
+    const SurfaceEnds& ends = tile.surfaces->ends[fragment];
+    const std::int32_t pixel = tile.fragments.pixel[fragment];
+    const bool rises = ends.level_front < ends.level_back;
+    const SurfaceRun& run = rises ? surfaces.rising : surfaces.falling;
+    const std::size_t first = surfaces.place(rises ? ends.level_front : ends.level_front - 1, rises);
+    const std::size_t end = first + static_cast<std::size_t>(std::abs(ends.level_back - ends.level_front));
+    if (surfaces.shading != SurfaceShading::smooth) {
+        if (hits.count == SurfaceHits::capacity) composite_pieces(d, cells, shading, tile);
+        glm::vec4 sum(0.0F);
+        float transmitted = 1.0F;
+        for (std::size_t i = first; i < end && transmitted > 0.0F; ++i) {
+            sum += transmitted * layer_at(run, i);
+            transmitted *= 1.0F - run.opacity[i];
+        }
+        add_hit(sum, ends.gradient_front, pixel, hits);
+        return !(transmitted > 0.0F);
+    }
+    const auto s_f = hn::Set(d, tile.fragments.front[fragment]), zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+    const float way = tile.fragments.back[fragment] - tile.fragments.front[fragment];
+    const auto per_way = hn::Set(d, std::abs(way) > 1e-30F ? 1.0F / way : 0.0F);
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        if (hits.count + hn::Lanes(d) > SurfaceHits::capacity) composite_pieces(d, cells, shading, tile);
+        const auto at = hn::Min(hn::Max(hn::Mul(hn::Sub(hn::LoadU(d, &run.value[i]), s_f), per_way), zero), one);
+        for (int axis = 0; axis < 3; ++axis)
+            hn::StoreU(hn::MulAdd(at, hn::Set(d, ends.gradient_back[axis] - ends.gradient_front[axis]), hn::Set(d, ends.gradient_front[axis])), d,
+                       hits.gradient[axis] + hits.count);
+        hn::StoreU(hn::LoadU(d, &run.red[i]), d, hits.color[0] + hits.count);
+        hn::StoreU(hn::LoadU(d, &run.green[i]), d, hits.color[1] + hits.count);
+        hn::StoreU(hn::LoadU(d, &run.blue[i]), d, hits.color[2] + hits.count);
+        const auto opacity = hn::LoadU(d, &run.opacity[i]);
+        hn::StoreU(opacity, d, hits.opacity + hits.count);
+        const hn::RebindToSigned<D> di;
+        hn::StoreU(hn::Set(di, pixel), di, hits.pixel + hits.count);
+        const auto some = HWY_MIN(hn::Lanes(d), end - i);
+        const auto opaque = hn::FindFirstTrue(d, hn::Ge(opacity, one));
+        const bool closed = opaque >= 0 && static_cast<std::size_t>(opaque) < some;
+        hits.count += closed ? static_cast<std::size_t>(opaque) + 1 : some;
+        if (closed) return true;
+    }
+    return false;
 }
 
 // Composites the fragments behind what is there, in their order, with the surfaces in them, and forgets them.
@@ -349,6 +420,7 @@ HWY_NOINLINE void composite_with_surfaces(D d, const ScreenCells& cells, const S
     Fragments& f = tile.fragments;
     SurfaceTile& s = *tile.surfaces;
     const ScreenSurfaces& surfaces = *cells.surfaces;
+    if (surfaces.lit_medium) find_shares(d, cells, tile, s.ends, s.shares);
     for (std::size_t i = 0; i < f.count; ++i) {
         const SurfaceEnds& ends = s.ends[i];
         const std::int32_t pixel = f.pixel[i];
@@ -358,6 +430,14 @@ HWY_NOINLINE void composite_with_surfaces(D d, const ScreenCells& cells, const S
             add_jump(d, cells, shading, tile, pixel, ends, trail);
         if (trail.level == PixelTrail::closed) continue;
         trail = {ends.level_back, ends.near_back, ends.item};
+        if (!surfaces.medium && !tile.window) {
+            if (ends.level_front != ends.level_back && add_layers(d, cells, shading, tile, i)) trail.level = PixelTrail::closed;
+            continue;
+        }
+        if (ends.level_front == ends.level_back && !tile.window) {
+            add_medium(d, cells, shading, tile, {f.front[i], f.back[i], f.length[i], pixel, i});
+            continue;
+        }
         // What begins at the near plane has the way from the eye as well, which belongs to the first piece.
         float before = perspective && ends.near_front > cells.view.near_plane ? 1.0F / ends.near_front : 0.0F;
         const float way = HWY_MAX(f.length[i] - before, 0.0F);
@@ -373,17 +453,17 @@ HWY_NOINLINE void composite_with_surfaces(D d, const ScreenCells& cells, const S
             if (at < cut.from) return true;
             if (at > cut.to) return false;
             const glm::vec3 gradient = ends.gradient_front + at * (ends.gradient_back - ends.gradient_front);
-            add_piece(d, cells, shading, tile, {front, v, before + way * (at - share), pixel, surface, rising, gradient});
+            add_piece(d, cells, shading, tile, {front, v, before + way * (at - share), pixel, i, share, at, surface, rising, gradient});
             before = 0.0F;
             front = v;
             share = at;
-            const bool opaque = surfaces.materials[static_cast<std::size_t>(surface)].opacity >= 1.0F;
+            const bool opaque = surfaces.is_opaque(surface);
             if (opaque) trail.level = PixelTrail::closed;
             return !opaque;
         });
         if (trail.level == PixelTrail::closed) continue;
         const float back = cut.to < 1.0F ? scalar_at(cut.to) : f.back[i];
-        add_piece(d, cells, shading, tile, {front, back, before + way * (cut.to - share), pixel});
+        add_piece(d, cells, shading, tile, {front, back, before + way * (cut.to - share), pixel, i, share, cut.to});
     }
     f.clear();
     composite_pieces(d, cells, shading, tile);
@@ -466,7 +546,7 @@ HWY_INLINE std::size_t draw_nearest(const ScreenCells& cells, const Tile& target
 
     for (std::int32_t p = 0; p < tile_side * tile_side; ++p) {
         if (nearest.surface[p] < 0) continue;
-        add_hit(*cells.surfaces, nearest.surface[p], nearest.rising[p], nearest.gradient[p], p, s.hits);
+        add_hit(layer_of(*cells.surfaces, nearest.surface[p], nearest.rising[p]), nearest.gradient[p], p, s.hits);
         s.trails[p] = {PixelTrail::closed, nearest.nearness[p], 0};
     }
     shade_hits(d, cells, tile.x, tile.y, s.hits);

@@ -20,7 +20,7 @@ struct SurfaceHits {
     using List = float[capacity + CellPlanes::columns];
 
     HWY_ALIGN List gradient[3];
-    HWY_ALIGN List color[3];   // of the side that is seen
+    HWY_ALIGN List color[3];   // of the side that is seen, associated
     HWY_ALIGN List opacity;
     HWY_ALIGN std::int32_t pixel[capacity + CellPlanes::columns];  // x + tile_side·y
     HWY_ALIGN float light[4 * (capacity + CellPlanes::columns)];   // for shade_hits to fill: associated colour and opacity
@@ -64,7 +64,7 @@ HWY_NOINLINE void shade_hits(D d, const ScreenCells& cells, float tile_x, float 
             reflect(d, surfaces.lighting, gradient, eye, sum);
         }
         for (int channel = 0; channel < 3; ++channel)
-            sum[channel] = hn::Mul(opacity, hn::Mul(sum[channel], hn::Load(d, hits.color[channel] + begin)));
+            sum[channel] = hn::Mul(sum[channel], hn::Load(d, hits.color[channel] + begin));
         hn::StoreInterleaved4(sum[0], sum[1], sum[2], opacity, d, hits.light + 4 * begin);
     }
 }

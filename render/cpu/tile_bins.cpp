@@ -40,14 +40,22 @@ void TileBins::find_cells(const ScreenCells& cells, const Region& region) {
     cells_found_ = true;
 }
 
+void TileBins::find_cells(const ScreenCells& cells, const Region& region, std::span<const CellId> drawn) {
+    if (drawn.empty()) return find_cells(cells, region);
+    boxes_.resize(std::max(boxes_.size(), cells.tets.size()));
+    oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, drawn.size(), items_per_chunk),
+                              [&](const auto& range) { find_boxes(cells, region, drawn.subspan(range.begin(), range.size()), boxes_); });
+    cells_found_ = true;
+}
+
 void TileBins::begin(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
-                     std::span<std::uint8_t> extra_drawn, bool opaque) {
+                     std::span<std::uint8_t> extra_drawn, bool opaque, std::span<const CellId> drawn) {
     cells_ = &cells;
     region_ = region;
     items_ = items;
     extra_drawn_ = extra_drawn;
     boxes_.resize(cells.tets.size() + cells.extra.size());
-    if (!cells_found_) find_cells(cells, region);
+    if (!cells_found_) find_cells(cells, region, drawn);
     cells_found_ = false;
     find_boxes(cells, region, cells.tets.size(), boxes_.size(), boxes_);
     chunks_left_ = chunks_to_count_ = (items.size() + items_per_chunk - 1) / items_per_chunk;

@@ -25,9 +25,12 @@ public:
     // The boxes of all whole cells over the region of the next begin(), which else finds them: this may run while the order is
     // still to be found. In the order of memory, where points of one cell are near those of the next.
     void find_cells(const ScreenCells& cells, const Region& region);
-    // Items, back to front, over a region. The arguments must outlive the slabs. `opaque`: whether tiles may become full.
+    // The same of the only ones that are drawn.
+    void find_cells(const ScreenCells& cells, const Region& region, std::span<const CellId> drawn);
+    // Items, back to front, over a region; cells only of those that are `drawn`, which is all of them where there are none. The arguments must
+    // outlive the slabs. `opaque`: whether tiles may become full.
     void begin(const ScreenCells& cells, const Region& region, std::span<const std::uint32_t> items,
-               std::span<std::uint8_t> extra_drawn, bool opaque);
+               std::span<std::uint8_t> extra_drawn, bool opaque, std::span<const CellId> drawn = {});
     // The next slab towards the back; all cores take part. False when there is none left.
     bool next();
     // The same for tiles that want all of their items at once: the next tiles, as many as the budget allows, at least one. Not to

@@ -181,25 +181,25 @@ HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits, flo
         return hn::RebindMask(d, hn::Ne(hn::Set(di, static_cast<std::int32_t>(fronts >> faces_by_side[fronts][i] & 1U)), hn::Zero(di)));
     };
     const auto front_1 = is_front(1), front_2 = is_front(2), back_1 = hn::Not(front_1), back_2 = hn::Not(front_2);
-    V at_left[4], right[4], down[4];  // nearness in the block of pixels at the left end; its change from block to block
+    V first[4], right[4], down[4];  // nearness in the box's first pixel; its change from pixel to pixel
     for (std::size_t i = 0; i < 4; ++i) {
         const std::size_t face = faces_by_side[fronts][i];
         right[i] = hn::Set(d, cell.slope_x[face][k]);
         down[i] = hn::Set(d, cell.slope_y[face][k]);
-        at_left[i] = hn::MulAdd(right[i], step_x, hn::MulAdd(down[i], step_y, hn::Set(d, cell.nearness[face][k])));
+        first[i] = hn::Set(d, cell.nearness[face][k]);
     }
     const V nearest = hn::Set(d, cell.nearest[k]), farthest = hn::Set(d, cell.farthest[k]);
 
     const int width = cell.width[k], height = cell.height[k];
     std::size_t count = hits.count;
     for (int y = 0; y < height; y += block_height) {
-        const V offset_y = hn::Set(d, static_cast<float>(y));
+        const V from_top = hn::Add(hn::Set(d, static_cast<float>(y)), step_y);
         const auto in_rows = hn::Lt(lane_y, hn::Set(di, height - y));
         V at_row[4];
-        for (std::size_t i = 0; i < 4; ++i) at_row[i] = hn::MulAdd(down[i], offset_y, at_left[i]);
+        for (std::size_t i = 0; i < 4; ++i) at_row[i] = fused(down[i], from_top, first[i]);  // whatever the block: the same bits
         for (int x = 0; x < width; x += block_width) {
-            const V offset_x = hn::Set(d, static_cast<float>(x));
-            const auto on_face = [&](std::size_t i) HWY_ATTR { return hn::MulAdd(right[i], offset_x, at_row[i]); };
+            const V from_left = hn::Add(hn::Set(d, static_cast<float>(x)), step_x);
+            const auto on_face = [&](std::size_t i) HWY_ATTR { return fused(right[i], from_left, at_row[i]); };
             const V one = on_face(1), two = on_face(2);
             V front = hn::Min(nearest, on_face(0)), back = hn::Max(farthest, on_face(3));
             front = hn::IfThenElse(front_1, hn::Min(front, one), front);
@@ -208,10 +208,11 @@ HWY_INLINE void find_hits(const CellPlanes& cell, std::size_t k, Hits& hits, flo
             back = hn::IfThenElse(back_2, hn::Max(back, two), back);
             const auto in_box = hn::And(hn::Lt(lane_x, hn::Set(di, width - x)), in_rows);
             const auto hit = hn::And(hn::Gt(surfaces ? hn::Add(front, hn::Set(d, margin)) : front, back), hn::RebindMask(d, in_box));
-            hn::StoreU(hn::Compress(front, hit), d, hits.front + count);
-            hn::StoreU(hn::Compress(back, hit), d, hits.back + count);
-            hn::StoreU(hn::Compress(hn::Add(lane_place, hn::Set(di, x + tile_side * y)), hn::RebindMask(di, hit)), di, hits.place + count);
-            count += hn::CountTrue(d, hit);
+            const LanePacker<decltype(d)> packer(d, hit);
+            packer.store(d, front, hits.front + count);
+            packer.store(d, back, hits.back + count);
+            packer.store(di, hn::Add(lane_place, hn::Set(di, x + tile_side * y)), hits.place + count);
+            count += packer.count();
         }
     }
     hits.count = count;
@@ -250,17 +251,17 @@ HWY_NOINLINE void add_fragments(D d, const View& view, const CellPlanes& cell, H
             length = hn::IfThenElse(hn::Gt(w_front, hn::Set(d, view.near_plane)), depth_back, hn::Mul(length, both));
         }
         hn::StoreU(length, d, f.length + to);
-        if constexpr (keyed) hn::StoreU(hn::MulAdd(hn::Set(d, 0.5F), hn::Add(front, back), of_cell(cell.base)), d, f.key + to);
+        if constexpr (keyed) hn::StoreU(fused(hn::Set(d, 0.5F), hn::Add(front, back), of_cell(cell.base)), d, f.key + to);
         const V first = of_cell(cell.first_scalar);
         if constexpr (constant) {
             hn::StoreU(first, d, f.front + to);
             hn::StoreU(first, d, f.back + to);
         } else {
-            const V across = hn::MulAdd(of_cell(cell.scalar_x), hn::ConvertTo(d, x),
-                                        hn::MulAdd(of_cell(cell.scalar_y), hn::ConvertTo(d, y), of_cell(cell.scalar)));
+            const V across = fused(of_cell(cell.scalar_x), hn::ConvertTo(d, x),
+                                   fused(of_cell(cell.scalar_y), hn::ConvertTo(d, y), of_cell(cell.scalar)));
             const V along = of_cell(cell.scalar_n), low = of_cell(cell.lowest), high = of_cell(cell.highest);
-            const V s_f = hn::MulAdd(hn::MulAdd(along, front, across), depth_front, first);
-            const V s_b = hn::MulAdd(hn::MulAdd(along, back, across), depth_back, first);
+            const V s_f = fused(fused(along, front, across), depth_front, first);
+            const V s_b = fused(fused(along, back, across), depth_back, first);
             hn::StoreU(hn::Min(hn::Max(s_f, low), high), d, f.front + to);
             hn::StoreU(hn::Min(hn::Max(s_b, low), high), d, f.back + to);
             lowest = hn::Min(lowest, low);

@@ -107,11 +107,11 @@ HWY_NOINLINE void cut_hits(D d, const View& view, const CellPlanes& cell, Window
         const auto anchor = hn::TableLookupLanes(hn::Load(d, cell.anchor), hn::IndicesFromVec(d, column));
         const auto front = hn::Min(hn::Load(d, hits.front + begin), hn::Sub(hn::GatherIndex(d, window.near, pixel), anchor));
         const auto back = hn::Max(hn::Load(d, hits.back + begin), hn::Sub(hn::GatherIndex(d, window.far, pixel), anchor));
-        const auto some = hn::Gt(front, back);
-        hn::StoreU(hn::Compress(front, some), d, hits.front + kept);
-        hn::StoreU(hn::Compress(back, some), d, hits.back + kept);
-        hn::StoreU(hn::Compress(place, hn::RebindMask(di, some)), di, hits.place + kept);
-        kept += hn::CountTrue(d, some);
+        const LanePacker<D> packer(d, hn::Gt(front, back));
+        packer.store(d, front, hits.front + kept);
+        packer.store(d, back, hits.back + kept);
+        packer.store(di, place, hits.place + kept);
+        kept += packer.count();
     }
     hits.count = kept;
 }

@@ -141,7 +141,7 @@ void GlRenderer::prepare_surfaces(const Scene& scene, const Quality& quality) {
         prepared_->set_surfaces(scene.surfaces, sides);
         surfaces_.reset();
     }
-    if (!has_surfaces(scene) || (surfaces_ && surfaces_->method() == quality.surfaces)) return;
+    if (!has_surface_scene(scene) || (surfaces_ && surfaces_->method() == quality.surfaces)) return;
     surfaces_.reset();  // none behind a failure
     surfaces_ = std::make_unique<SurfacePass>(*prepared_, quality.surfaces);
 }
@@ -154,11 +154,11 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     validate(size, "size");
     const CurrentContext current(*context_);
     prepare_here(scene, quality);
-    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, DepthWindow::is_needed(scene), rules_);
+    const Plan plan = plan_view(plan_, prepared_->facts(), camera, size, ray_cuts(scene), rules_);
     statistics.ms.plan = total.ms();
     if (plan.drawing == Plan::Drawing::nothing) {
         Image image(size.width, size.height);
-        if (DepthWindow::is_needed(scene)) DepthWindow(scene, camera, size, prepared_->units().length).add_bodies(image);
+        if (ray_cuts(scene).any()) DepthWindow(scene, camera, size, prepared_->units().length).add_opaque(image);
         statistics.ms.total = total.ms();
         describe(statistics, quality, plan);
         if (out) *out = std::move(statistics);
@@ -176,7 +176,7 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     const CellStream cells(*prepared_, camera, size);
     std::optional<DepthWindow> window;
     windows_.reset();
-    if (DepthWindow::is_needed(scene)) {
+    if (ray_cuts(scene).any()) {
         window.emplace(scene, camera, size, prepared_->units().length);
         windows_.emplace(*window, surfaces_ ? cells.nearness_frame() : cells.segment_frame(), size.width);
     }
@@ -193,14 +193,14 @@ Image GlRenderer::render(const Scene& scene, const Camera& camera, ImageSize siz
     Image image = target_.read();
     check_errors("drawing");
     keep_physical(image);
-    if (window) window->add_bodies(image);
+    if (window) window->add_opaque(image);
     statistics.ms.read_back = read_back.ms();
     statistics.ms.total = total.ms();
 
     describe(statistics, quality, plan);
     if (out) {  // the proof of the order is no part of the frame
         if (plan.sorts()) {
-            prepared_->judge(order, order_report, camera, size, quality.check_rays, statistics);
+            prepared_->judge(order, order_report, camera, size, quality, statistics);
             tell_order(statistics.plan, statistics.order, statistics.order_exact);
         }
         *out = std::move(statistics);

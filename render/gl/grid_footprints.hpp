@@ -16,14 +16,15 @@
 #include "render/gl/programs.hpp"
 #include "render/gl/segment_shader.hpp"
 #include "render/gl/triangle_stream.hpp"
+#include "render/gl/window_texture.hpp"
 
 namespace cellproj::gl {
 
 class GridFootprints {
 public:
-    // All must outlive this. `defines`: besides those of the view.
+    // All must outlive this. `defines`: besides those of the view. `window`: what cuts the rays; null: nothing.
     GridFootprints(const GridView& view, const SegmentShader& shader, Programs& programs, const std::string& defines,
-                   TriangleStream& stream);
+                   const WindowTexture* window, TriangleStream& stream);
 
     // In their order. Returns the number of triangles, two for a square or rectangle.
     std::size_t draw(std::span<const std::uint32_t> cells);

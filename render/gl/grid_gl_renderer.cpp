@@ -16,7 +16,9 @@
 #include "render/gl/grid_traversal.hpp"
 #include "render/gl/grid_view.hpp"
 #include "render/gl/shaders.hpp"
+#include "render/gl/window_texture.hpp"
 #include "render/grid_plan.hpp"
+#include "render/plan.hpp"
 
 namespace cellproj::gl {
 
@@ -73,6 +75,7 @@ void GlGridRenderer::prepare(const GridScene& scene, const GridQuality& quality)
 
 void GlGridRenderer::prepare_here(const GridScene& scene, const GridQuality& quality) {
     gl::require_grid_drawn(quality, has_surfaces(scene));
+    require_grid_cut(quality, ray_cuts(scene));
     if (quality.sampling.cut != GridSampling::Cut::cells) require_sliced(*scene.grid, quality.sampling);
     const bool same_grid = volume_ && scene_.grid == scene.grid;
     const bool same_transfer = same_grid && scene_.transfer == scene.transfer;
@@ -130,11 +133,14 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     const GridView view(*scene.grid, volume_->units(), camera, size);
     volume_->values().bind(values_unit);
     const bool cells = quality.sampling.cut == GridSampling::Cut::cells;
-    cells ? draw_cells(view, camera, statistics) : draw_slabs(view, statistics);
+    std::optional<DepthWindow> window;
+    if (ray_cuts(scene).any()) window.emplace(scene, camera, size, volume_->units().length);
+    cells ? draw_cells(view, camera, window ? &*window : nullptr, statistics) : draw_slabs(view, statistics);
 
     const Stopwatch read_back;
     Image image = target_.read();
     check_errors("drawing");
+    if (window) window->add_opaque(image);
     statistics.ms.read_back = read_back.ms();
     statistics.ms.total = total.ms();
     if (!out) return image;
@@ -148,15 +154,16 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     statistics.backend_version = driver_version();
     statistics.order = cells ? "slices" : to_string(quality.sampling);
     statistics.order_exact = true;
-    // Either OpenGL backend stands for both.
-    statistics.plan = plan_of(scene, quality, {Backend::gl_osmesa, statistics.counts.cells, statistics.counts.drawn, true});
+    statistics.plan = plan_of(scene, quality, {.rays = false, .cells = statistics.counts.cells, .drawn = statistics.counts.drawn, .medium = true});
     *out = std::move(statistics);
     return image;
 }
 
-void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, Statistics& statistics) {
+void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, Statistics& statistics) {
     const std::string blending = blending_define(quality_.method);
-    GridFootprints footprints(view, *shader_, programs_, blending, indices_);
+    std::optional<const WindowTexture> kept;
+    if (window) kept.emplace(*window, view.perspective() ? 0.0 : view.to_eye(glm::dvec3(0.0)).z, view.transform().size().width);
+    GridFootprints footprints(view, *shader_, programs_, blending, kept ? &*kept : nullptr, indices_);
     std::optional<GridTemplates> templates;
     if (light_at_vertices(quality_.method))
         templates.emplace(view, volume_->units(), *shader_, programs_, blending, footprints, indices_, pairs_);

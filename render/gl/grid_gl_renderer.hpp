@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "project/camera.hpp"
+#include "render/depth_window.hpp"
 #include "render/gl/context.hpp"
 #include "render/gl/grid_view.hpp"
 #include "render/gl/grid_volume.hpp"
@@ -39,7 +40,7 @@ private:
         double mean, longest;  // of segments [scene units]
     };
     Lengths segment_lengths(const GridSampling& sampling) const;
-    void draw_cells(const GridView& view, const Camera& camera, Statistics& statistics);
+    void draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, Statistics& statistics);
     void draw_slabs(const GridView& view, Statistics& statistics);
 
     std::unique_ptr<Context> context_;  // current during calls only

@@ -29,9 +29,10 @@ Texture upload(const PreparedSurfaces& surfaces) {
     for (std::size_t i = 0; i < surfaces.values().size(); ++i) {
         const IsoSurface& surface = surfaces.scene().isosurfaces.surfaces()[i];
         append(texels, {surfaces.thresholds()[i], surfaces.values()[i], surface.opacity}, 0.0);
-        append(texels, seen_color(surface, true), 0.0);
-        append(texels, seen_color(surface, false), 0.0);
+        append(texels, surface.opacity * seen_color(surface, true), surface.opacity);
+        append(texels, surface.opacity * seen_color(surface, false), surface.opacity);
     }
+    if (texels.empty()) texels.resize(12);  // a medium that is lit, alone: read by what is not drawn
     return Texture::list(texels);
 }
 
@@ -51,12 +52,15 @@ Texture upload(const std::vector<DirectionalLight>& lights) {
     return Texture::list(texels);
 }
 
+// As most scenes have: nothing to be read, and no middle between two directions.
+bool has_one_headlight(const Lighting& lighting) { return lighting.lights.size() == 1 && !lighting.lights.front().towards; }
+
 }  // namespace
 
 void SurfacePass::require_drawn(const Scene& scene, const Quality& quality) {
-    if (!has_surfaces(scene)) return;
+    if (!has_surface_scene(scene)) return;
     if (!takes_surfaces(quality.method))
-        throw Error({ErrorKind::option, "--method", "one of light per pixel, blended once, for a scene with isosurfaces",
+        throw Error({ErrorKind::option, "--method", "one of light per pixel, blended once, for a scene with isosurfaces or a lit medium",
                      to_string(quality.method), "use integral, exact or a table"});
 }
 
@@ -95,7 +99,7 @@ std::string SurfacePass::defines(bool perspective, bool nearest) const {
     const Shading shading = scene().shading;
     return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (medium ? "#define MEDIUM\n" : "") +
            (medium && two_fields ? "#define TWO_FIELDS\n" : "") + (shading != Shading::unlit ? "#define LIT\n" : "") +
-           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
+           (has_one_headlight(scene().lighting) ? "#define HEADLIGHT\n" : "") + (prepared_.lights_medium() ? "#define LIT_MEDIUM\n" : "") + (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
            (method_.kind != SurfaceMethodKind::exact ? "#define TABLE\n" : "") +
            (method_.kind == SurfaceMethodKind::combined ? "#define COMBINED\n" : "");
 }
@@ -130,7 +134,13 @@ void SurfacePass::bind(const Program& program, const CellStream& cells, const Ne
 
     const Lighting& lighting = scene().lighting;
     set("two_sided", lighting.two_sided ? 1.0 : 0.0);
-    set("light_count", static_cast<double>(lighting.lights.size()));
+    if (has_one_headlight(lighting)) {
+        const DirectionalLight& light = lighting.lights.front();
+        program.set("headlight_diffuse", glm::vec4(light.diffuse * light.color, 0.0));
+        program.set("headlight_specular", glm::vec4(light.specular * light.color, 0.0));
+    } else {
+        set("light_count", static_cast<double>(lighting.lights.size()));
+    }
     program.set("ambient", glm::vec4(lighting.ambient, lighting.exponent));
     // The rows of the rotation, seen through what it makes of the axes.
     const glm::dvec3 x = transform.to_eye({1, 0, 0}), y = transform.to_eye({0, 1, 0}), z = transform.to_eye({0, 0, 1});

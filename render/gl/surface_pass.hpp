@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Isosurfaces in OpenGL (shaders/surfaces.frag): what the scene's surfaces and lights are to the fragments. Which cells they cross, which
+// Isosurfaces, and media that are lit, in OpenGL (shaders/surfaces.frag): what the scene's surfaces and lights are to the fragments. Which cells they cross, which
 // of them are seen and whether they want an order is known to PreparedScene.
 #pragma once
 
@@ -23,7 +23,7 @@ public:
     // How the thresholds stand for a method (PreparedSurfaces).
     static SurfaceSides sides_for(const SurfaceMethod& method);
 
-    // Of a scene that has_surfaces, as they are now, with the sides of the method; it must outlive this.
+    // Of a scene that has_surface_scene, as they are now, with the sides of the method; it must outlive this.
     SurfacePass(const PreparedScene& prepared, const SurfaceMethod& method);
 
     const SurfaceMethod& method() const { return method_; }

@@ -2,6 +2,7 @@
 #include "render/gl/window_texture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "mesh/error.hpp"
@@ -15,29 +16,40 @@ constexpr unsigned int windows_unit = 10;
 
 constexpr double unbounded = 1e30;
 
-std::vector<float> texels(const DepthWindow& window, const NearnessFrame& frame) {
-    const auto nearness = [&](double depth) {
-        return static_cast<float>(std::clamp(frame.nearness(frame.perspective ? 1.0 / depth : depth), -unbounded, unbounded));
-    };
+// `place`: of a depth, in the numbers of the shader. `nothing`: an interval in which nothing is.
+template <class Place>
+std::vector<float> texels(const DepthWindow& window, Place place, const std::array<double, 2>& nothing) {
     std::vector<float> result;
     result.reserve(2 * window.pixels().size());
+    const auto add = [&](double value) { result.push_back(static_cast<float>(std::clamp(value, -unbounded, unbounded))); };
     for (const DepthInterval& pixel : window.pixels()) {
-        result.push_back(pixel.empty() ? static_cast<float>(-unbounded) : nearness(pixel.near));
-        result.push_back(pixel.empty() ? static_cast<float>(unbounded) : nearness(pixel.far));
+        add(pixel.empty() ? nothing[0] : place(pixel.near));
+        add(pixel.empty() ? nothing[1] : place(pixel.far));
     }
     return result;
+}
+
+std::vector<float> nearness_texels(const DepthWindow& window, const NearnessFrame& frame) {
+    return texels(window, [&](double depth) { return frame.nearness(frame.perspective ? 1.0 / depth : depth); }, {-unbounded, unbounded});
+}
+
+std::vector<float> depth_texels(const DepthWindow& window, double reference) {
+    return texels(window, [&](double depth) { return depth - reference; }, {unbounded, -unbounded});
 }
 
 }  // namespace
 
 void WindowTexture::require_drawn(const Scene& scene, const Quality& quality) {
-    if (!DepthWindow::is_needed(scene) || !light_at_vertices(quality.method)) return;
-    throw Error({ErrorKind::option, "--method", "one of light per pixel for a scene that is clipped or has bodies", to_string(quality.method),
+    if (!ray_cuts(scene).any() || !light_at_vertices(quality.method)) return;
+    throw Error({ErrorKind::option, "--method", "one of light per pixel for a scene that is clipped or has bodies or slices", to_string(quality.method),
                  "use integral, exact or a table"});
 }
 
 WindowTexture::WindowTexture(const DepthWindow& window, const NearnessFrame& frame, int width)
-    : texels_(Texture::list_of_pairs(texels(window, frame))), width_(width) {}
+    : texels_(Texture::list_of_pairs(nearness_texels(window, frame))), width_(width) {}
+
+WindowTexture::WindowTexture(const DepthWindow& window, double reference_depth, int width)
+    : texels_(Texture::list_of_pairs(depth_texels(window, reference_depth))), width_(width) {}
 
 void WindowTexture::bind(const Program& program) const {
     program.set("window_width", static_cast<float>(width_));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What clip regions and bodies leave of the rays of a picture (render/depth_window.hpp), as fragments cut their segments by it: the variants
-// WINDOW of shaders/cell.frag and shaders/surfaces.frag.
+// What clip regions, bodies and slices leave of the rays of a picture (render/depth_window.hpp), as fragments cut their segments by it: the variants
+// WINDOW of shaders/cell.frag, shaders/surfaces.frag and shaders/grid_cell.frag.
 #pragma once
 
 #include "render/depth_window.hpp"
@@ -19,6 +19,8 @@ public:
 
     // `frame`: that of the fragments' nearness.
     WindowTexture(const DepthWindow& window, const NearnessFrame& frame, int width);
+    // For cells of grids, along whose rays a parameter is the depth less that of the view's reference point.
+    WindowTexture(const DepthWindow& window, double reference_depth, int width);
 
     void bind(const Program& program) const;
 

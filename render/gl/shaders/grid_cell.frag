@@ -5,6 +5,11 @@
 flat in vec3 v_low, v_high, v_inverse_edges;
 flat in vec4 v_bottom, v_top;
 
+#ifdef WINDOW
+layout(binding = 10) uniform samplerBuffer windows;  // of the pixels: what is kept of their rays, by the ray's parameter
+uniform float window_width;                          // pixels in a row
+#endif
+
 layout(location = 0) out vec4 light;  // associated colour, opacity
 
 #define scalars float
@@ -26,6 +31,10 @@ float scalar_at(vec3 place) {
 void main() {
     Ray ray = ray_of_pixel();
     vec2 inside = part_between(ray, v_low, v_high);
+#ifdef WINDOW
+    vec2 window = texelFetch(windows, int(gl_FragCoord.x) + int(window_width) * int(gl_FragCoord.y)).xy;
+    inside = vec2(max(inside.x, window.x), min(inside.y, window.y));
+#endif
     if (!(inside.x < inside.y)) discard;
     float s_front = scalar_at(ray.origin + inside.x * ray.direction), s_back = scalar_at(ray.origin + inside.y * ray.direction);
     light = light_of_segment(s_front, s_back, (inside.y - inside.x) * ray.stretch);

@@ -8,6 +8,7 @@
 //   MEDIUM    there is one (TWO_FIELDS: whose extinction is told by another field); the method's file, behind this one, says what light it gives
 //   LIT       surfaces are shaded by the gradient, one for the cell or
 //   SMOOTH    linear in it
+//   LIT_MEDIUM  so is the medium
 //   NEAREST   all are opaque and there is no medium: the first crossing, for the depth test
 //   WINDOW    of each ray only a part is kept
 in vec3 v_ridges;
@@ -28,7 +29,7 @@ uniform vec2 principal_point;  // pixels
 uniform float pixels_per_unit; // perspective: at depth 1
 uniform float inverse_near;    // perspective: 1 / depth of the near plane
 uniform float inverse_nearest; // 1 / the largest nearness
-layout(binding = 8) uniform samplerBuffer surfaces;  // three each: threshold, isovalue, opacity; front colour; back colour
+layout(binding = 8) uniform samplerBuffer surfaces;  // three each: threshold, isovalue, opacity; front, back: associated colour, opacity
 
 #ifdef WINDOW
 layout(binding = 10) uniform samplerBuffer windows;  // of the pixels: what is kept of their rays, nearest and farthest nearness
@@ -80,14 +81,24 @@ vec2 ends(float a, float b, float c) { return vec2(min(min(a, b), c), max(max(a,
 #ifdef LIT
 uniform vec4 axis_right, axis_down, axis_forward;  // of the camera, in those of the mesh
 uniform vec4 ambient;                              // and the exponent
-uniform float two_sided, light_count;
+uniform float two_sided;
+#ifdef HEADLIGHT
+uniform vec4 headlight_diffuse, headlight_specular;
+#else
+uniform float light_count;
 layout(binding = 9) uniform samplerBuffer lights;  // two each: direction to it, of length 1 (0: to the eye), diffuse; colour, specular
+#endif
 
 // classify/lighting.hpp: what of its colour a surface reflects. `to_eye` has length 1.
 vec3 reflected(vec3 gradient, vec3 to_eye) {
     vec3 size = abs(gradient);
     float largest = max(max(size.x, size.y), size.z);
     vec3 normal = -normalize(gradient / largest);
+#ifdef HEADLIGHT
+    float facing = dot(normal, to_eye);
+    facing = clamp(two_sided > 0.0 ? abs(facing) : facing, 0.0, 1.0);
+    vec3 sum = ambient.rgb + headlight_diffuse.rgb * facing + headlight_specular.rgb * (facing > 0.0 ? pow(facing, ambient.w) : 0.0);
+#else
     if (two_sided > 0.0 && dot(normal, to_eye) < 0.0) normal = -normal;
     vec3 sum = ambient.rgb;
     for (float i = 0.0; i < light_count; ++i) {
@@ -99,8 +110,31 @@ vec3 reflected(vec3 gradient, vec3 to_eye) {
         float highlight = pow(clamp(dot(normal, middle) / max(length(middle), 1e-30), 0.0, 1.0), ambient.w);
         sum += facing > 0.0 ? second.rgb * (first.w * min(facing, 1.0) + second.w * highlight) : vec3(0.0);
     }
+#endif
     return largest > 0.0 ? sum : vec3(1.0);
 }
+#endif
+
+#ifdef MEDIUM
+#ifdef LIT_MEDIUM
+vec3 share_in_front, share_behind;  // what of its light the medium sends to the eye, linear between
+
+// classify/lighting.hpp, by a gradient over the weak one.
+vec3 lit_share(vec3 gradient, vec3 to_eye) {
+    float square = min(dot(gradient, gradient), 1e30);
+    return mix(vec3(1.0), reflected(gradient, to_eye), square / (1.0 + square));
+}
+
+// Light that grows linearly along a homogeneous segment of optical depth D is, in the mean, what it is at 1/D - 1/(e^D - 1) of the way
+// (render/cpu/medium_light-inl.hpp). `from`, `to`: of the way through the cell.
+vec4 lit(vec4 light, float from, float to) {
+    float passed = max(1.0 - light.a, 1e-30), depth = -log(passed);
+    float place = depth < 0.5 ? 0.5 - depth * (1.0 / 12.0 - depth * depth / 720.0) : 1.0 / depth - passed / light.a;
+    return vec4(light.rgb * mix(share_in_front, share_behind, mix(from, to, place)), light.a);
+}
+#else
+vec4 lit(vec4 light, float from, float to) { return light; }
+#endif
 #endif
 
 // In eye space, from the farthest point's depth on: where the field of the cell is told.
@@ -181,6 +215,14 @@ void main() {
     vec3 to_eye = -axis_forward.xyz;
 #endif
 #endif
+#ifdef LIT_MEDIUM
+#ifdef SMOOTH
+    share_in_front = lit_share(at_front.xyz, to_eye);
+    share_behind = lit_share(at_back.xyz, to_eye);
+#else
+    share_in_front = share_behind = lit_share(v_map.xyz, to_eye);
+#endif
+#endif
 
 #ifdef TABLE
     precise vec2 place = vec2(front.y, back.y) * table_scale + table_shift;  // both cells of a face: the same
@@ -218,10 +260,11 @@ void main() {
 #ifdef MEDIUM
 #ifdef TWO_FIELDS
     vec2 o_kept = vec2(mix(s_opacity.x, s_opacity.y, kept.x), mix(s_opacity.x, s_opacity.y, kept.y));
-    light += (1.0 - light.a) * light_of_segment(vec2(s_kept.x, o_kept.x), vec2(s_kept.y, o_kept.y), (kept.y - kept.x) * segment + lead);
+    vec4 medium = light_of_segment(vec2(s_kept.x, o_kept.x), vec2(s_kept.y, o_kept.y), (kept.y - kept.x) * segment + lead);
 #else
-    light += (1.0 - light.a) * light_of_segment(s_kept.x, s_kept.y, (kept.y - kept.x) * segment + lead);
+    vec4 medium = light_of_segment(s_kept.x, s_kept.y, (kept.y - kept.x) * segment + lead);
 #endif
+    light += (1.0 - light.a) * lit(medium, kept.x, kept.y);
 #endif
     light += (1.0 - light.a) * behind;
 #else
@@ -232,10 +275,11 @@ void main() {
     for (bool before = true;;) {
         float part = (to - from) * segment + lead;
 #ifdef TWO_FIELDS
-        light += (1.0 - light.a) * light_of_segment(vec2(s_at, mix(s_opacity.x, s_opacity.y, from)), vec2(s_to, mix(s_opacity.x, s_opacity.y, to)), part);
+        vec4 medium = light_of_segment(vec2(s_at, mix(s_opacity.x, s_opacity.y, from)), vec2(s_to, mix(s_opacity.x, s_opacity.y, to)), part);
 #else
-        light += (1.0 - light.a) * light_of_segment(s_at, s_to, part);
+        vec4 medium = light_of_segment(s_at, s_to, part);
 #endif
+        light += (1.0 - light.a) * lit(medium, from, to);
         if (before) light += (1.0 - light.a) * layers;
         if (!before || !crossed || light.a >= 1.0) break;
         from = to;
@@ -268,6 +312,9 @@ void main() {
     float at = kept.x, s_at = mix(s.x, s.y, kept.x);  // where the last crossing was, as a share of the segment, and the scalar there
     for (;;) {
         bool crossed = k != end;
+#if !defined(MEDIUM) && !defined(NEAREST)
+        if (!crossed) break;
+#endif
         int surface = 3 * max(rising ? k : k - 1, 0);
         vec4 about = texelFetch(surfaces, surface);
         float share = crossed && s.x != s.y ? clamp((about.y - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
@@ -288,26 +335,27 @@ void main() {
         float part = (share - at) * segment + lead;
 #ifdef TWO_FIELDS
         vec2 from = vec2(s_at, mix(s_opacity.x, s_opacity.y, at)), to = vec2(s_here, mix(s_opacity.x, s_opacity.y, share));
-        light += (1.0 - light.a) * light_of_segment(from, to, part);
+        vec4 medium = light_of_segment(from, to, part);
 #else
-        light += (1.0 - light.a) * light_of_segment(s_at, s_here, part);
+        vec4 medium = light_of_segment(s_at, s_here, part);
 #endif
+        light += (1.0 - light.a) * lit(medium, at, share);
         s_at = s_here;
         lead = 0.0;
 #endif
-        vec3 color = texelFetch(surfaces, surface + (rising ? 1 : 2)).rgb;
+        vec4 layer = texelFetch(surfaces, surface + (rising ? 1 : 2));
 #ifdef SMOOTH
         vec3 share_of_color = reflected(mix(at_front.xyz, at_back.xyz, share), to_eye);
 #endif
 #ifdef LIT
-        color *= share_of_color;
+        layer.rgb *= share_of_color;
 #endif
 #ifdef NEAREST
         set_depth(front_depth + share * depth_difference);
-        light = vec4(color, 1.0);
+        light = vec4(layer.rgb, 1.0);
         break;
 #else
-        if (crossed) light += (1.0 - light.a) * vec4(color * about.z, about.z);
+        if (crossed) light += (1.0 - light.a) * layer;
         if (!crossed || light.a >= 1.0) break;
         at = share;
         k += rising ? 1 : -1;
