@@ -45,7 +45,7 @@ void validate(const ClipRegion& region, const std::string& place) {
         if (!finite(half_space.point) || !finite(half_space.normal))
             throw Error({ErrorKind::option, place, "a finite point and normal", in_words(half_space), "correct it"});
         if (half_space.normal == glm::dvec3(0.0))
-            throw Error({ErrorKind::option, place, "a normal with a length", in_words(half_space), "it points to the side that is kept"});
+            throw Error({ErrorKind::option, place, "a normal with a length", in_words(half_space), "it points to one side of the plane, such as 0,0,1"});
     }
 }
 

@@ -14,17 +14,18 @@ Decision cells(const GridQuality& quality, const GridFacts& facts) {
         return {"cells", "all " + std::to_string(facts.cells), "slabs between slices (" + to_string(quality.sampling) + ") know no cells"};
     const std::string chosen = std::to_string(facts.drawn) + " of " + std::to_string(facts.cells);
     if (facts.drawn == facts.cells) return {"cells", chosen, "every one shows something"};
-    return {"cells", chosen, facts.backend == Backend::cpu ? "rays leap over bricks that show nothing" : "the others show nothing"};
+    return {"cells", chosen, facts.rays ? "rays leap over bricks that show nothing" : "the others show nothing"};
 }
 
 Decision order(const GridQuality& quality, const GridFacts& facts) {
-    if (facts.backend == Backend::cpu) return {"order", "none", "rays meet their cells one after the other"};
+    if (facts.rays) return {"order", "none", "rays meet their cells one after the other"};
     if (quality.sampling.cut == GridSampling::Cut::cells) return {"order", "slices, back to front", "the order of boxes follows from the eye alone"};
     return {"order", "back to front", "slabs follow each other"};
 }
 
 Decision segments(const GridScene& scene, const GridQuality& quality, const GridFacts& facts) {
     const std::string method = to_string(quality.method);
+    if (facts.drawn == 0) return {"segments", "none", "no cell shows anything"};
     if (!facts.medium && has_surfaces(scene)) return {"segments", "none", "nothing is seen between the isosurfaces"};
     if (quality.sampling.cut != GridSampling::Cut::cells) return {"segments", method, "one in each slab, linear between its slices"};
     if (quality.method.kind == MethodKind::exact) return {"segments", method, "the cubic of the trilinear scalar, in as many lines as the error takes"};

@@ -13,7 +13,7 @@ namespace cellproj {
 
 // As found for a scene by the renderer that draws it.
 struct GridFacts {
-    Backend backend;
+    bool rays;                 // walk from cell to cell (CPU), or cells and slabs are drawn (OpenGL)
     std::size_t cells, drawn;  // of the grid, and those that are not left out
     bool medium;               // whether there is light between surfaces
 };

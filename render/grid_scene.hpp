@@ -17,7 +17,9 @@ namespace cellproj {
 struct GridScene {
     std::shared_ptr<const Grid> grid;
     std::shared_ptr<const TransferFunction> transfer;
-    std::shared_ptr<const SurfaceScene> surfaces = nullptr;  // null: none; they lie in the medium of `transfer`
+    // Null: none. They lie in the medium of `transfer`. Flat shading takes the gradient of the trilinear scalar, smooth that of the points,
+    // trilinear in between (mesh/grid_gradient.hpp).
+    std::shared_ptr<const SurfaceScene> surfaces = nullptr;
     std::shared_ptr<const ClipRegion> clip = nullptr;     // as of a mesh (scene.hpp)
     std::shared_ptr<const BodyScene> bodies = nullptr;
     std::shared_ptr<const SliceScene> slices = nullptr;   // without cuts

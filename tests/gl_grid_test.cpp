@@ -393,9 +393,6 @@ TEST(GlGrid, RefusesByName) {
     Grid broken = unit_cube(2, bumps);
     broken.values[3] = std::nan("");
     EXPECT_THROW(draw(scene_of(broken, testing_support::ramp()), camera, {8, 8}), Error);
-    GridScene with_surfaces = scene;
-    with_surfaces.surfaces = std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces({{0.5, {1, 1, 1}, 1, {}}}), Shading::unlit, {}});
-    EXPECT_THROW(draw(with_surfaces, camera, {8, 8}), Error);
     EXPECT_THROW(draw(scene, camera, {0, 8}), Error);
     EXPECT_NO_THROW(draw(scene, camera, {8, 8}));  // and is as good as new
 }

@@ -74,7 +74,7 @@ TEST_F(GridCommand, AGridIsDrawnAsItIs) {
 }
 
 TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
-    for (const char* option : {"--iso 20 --iso-method table", "--iso 20 --backend gl", "--order mpvo", "--cell-values averaged", "--verify-order"}) {
+    for (const char* option : {"--iso 20 --iso-method table", "--order mpvo", "--cell-values averaged", "--verify-order"}) {
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "tetrahedra") << option;
         std::filesystem::remove(folder_ / "p.png");
         expect_refused(std::string(voxels) + " --as grid " + option, {"regular grid", "--as tets"});
@@ -85,7 +85,7 @@ TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
 }
 
 TEST_F(GridCommand, RaysThroughAGridAreCutInIt) {
-    for (const char* option : {"--clip 1,1,1:0,0,1", "--clip-box 0,0,0,2,2,2 --caps", "--surface demo:sphere", "--slice 1,1,1:1,1,1 --volume"})
+    for (const char* option : {"--clip 1,1,1:0,0,1", "--clip-box 0,0,0,2,2,2", "--clip 1,1,1:0,0,-1 --caps", "--surface demo:sphere", "--slice 1,1,1:1,1,1 --volume"})
         for (const char* backend : {" --backend cpu", " --backend gl"}) EXPECT_EQ(drawn_as(std::string(voxels) + " " + option + backend), "grid") << option;
     EXPECT_EQ(drawn_as(std::string(voxels) + " --clip 1,1,1:0,0,1 --verify-order"), "tetrahedra");
     std::filesystem::remove(folder_ / "p.png");
@@ -93,11 +93,13 @@ TEST_F(GridCommand, RaysThroughAGridAreCutInIt) {
 }
 
 TEST_F(GridCommand, IsosurfacesAreThoseOfTheGrid) {
-    for (const char* option : {"--iso 20", "--iso 15,25 --shading flat --light 1,0,0", "--iso 20:red:0.5 --volume --as grid"})
+    for (const char* option : {"--iso 20", "--iso 20 --backend gl", "--iso 15,25 --shading flat --light 1,0,0", "--iso 20:red:0.5 --volume --as grid"})
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "grid") << option;
     const Outcome explained = run(std::string(voxels) + " --iso 20,30 --explain");
     for (const char* words : {"exact roots", "of all points", "nothing is seen between the isosurfaces"})
         EXPECT_NE(explained.text.find(words), std::string::npos) << explained.text;
+    const Outcome slabs = run(std::string(voxels) + " --iso 20 --sampling view:30 --shading unlit --explain");
+    for (const char* words : {"by slabs", "unlit"}) EXPECT_NE(slabs.text.find(words), std::string::npos) << slabs.text;
     EXPECT_EQ(drawn_as(std::string(voxels) + " --iso 20 --as tets"), "tetrahedra");
 }
 
@@ -108,7 +110,7 @@ TEST_F(GridCommand, OpenGlDrawsCellsAndSlabs) {
     std::filesystem::remove(folder_ / "p.png");
     expect_refused(std::string(voxels) + " --sampling object:8 --backend cpu", {"--sampling", "--backend gl"});
     expect_refused(std::string(voxels) + " --sampling object:8 --as tets", {"--sampling", "tetrahedra"});
-    expect_refused(std::string(voxels) + " --sampling object:8 --iso 20", {"--iso"});
+    expect_refused(std::string(voxels) + " --sampling object:8:post --iso 20", {"--sampling", "object:8:post"});
     expect_refused(std::string(voxels) + " --sampling objects:8", {"--sampling", "did you mean \"object\""});
     expect_refused(std::string(voxels) + " --as grid --backend gl --method exact", {"--method", "exact"});
 }

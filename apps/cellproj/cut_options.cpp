@@ -55,7 +55,8 @@ void add_slices(const CutOptions& options, std::shared_ptr<const TransferFunctio
     const Bounds box = bounds(scene.mesh->points);
     for (std::size_t i = 0; i < options.slices.size(); ++i) {
         if (grid ? slice_meets(sliced.slices[i], grid->bounds()) : !sliced.cuts[i].empty()) continue;
-        std::fprintf(stderr, "cellproj: warning: --slice %s: nothing of the mesh is in this plane; the mesh lies in %s\n", options.slices[i].c_str(), in_words(box).c_str());
+        std::fprintf(stderr, "cellproj: warning: --slice %s: nothing of the mesh is in this plane; the mesh lies in %s\n",
+                     options.slices[i].c_str(), in_words(box).c_str());
     }
     scene.slices = std::make_shared<const SliceScene>(std::move(sliced));
 }
@@ -90,8 +91,7 @@ std::vector<HalfSpace> parse_slices(const CutOptions& options) {
     ClipRegion planes;
     for (const std::string& slice : options.slices)
         planes.half_spaces.push_back(parse_plane("--slice", slice, "0,0,0:1,0,0 is the plane across x through the origin"));
-    for (const HalfSpace& plane : planes.half_spaces)
-        if (plane.normal == glm::dvec3(0.0)) throw Error({ErrorKind::option, "--slice", "a normal with a length", "0,0,0", "it stands on the plane: 0,0,1 is across z"});
+    validate(planes, "--slice");
     return planes.half_spaces;
 }
 

@@ -191,8 +191,10 @@ LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as) {
                 .opacity_field = opacity};
     if (options.iso.any_shaded()) add_surfaces(options, scene);
     add_cuts(options.cuts, parse_lighting(options.iso), scene.transfer, regular.get(), scene);
-    if (!draws_volume(options))
-        scene.transfer = std::make_shared<const TransferFunction>(OpticalModel::density, std::vector<ColorNode>{{0, glm::dvec3(0)}}, std::vector<ExtinctionNode>{{0, 0}});
+    if (!draws_volume(options)) {
+        const TransferFunction nothing(OpticalModel::density, {{0, glm::dvec3(0)}}, {{0, 0}});
+        scene.transfer = std::make_shared<const TransferFunction>(nothing);
+    }
     std::optional<GridScene> grid;
     if (regular) grid = GridScene{std::move(regular), scene.transfer, scene.surfaces, scene.clip, scene.bodies, scene.slices};
     std::optional<HierarchyScene> hierarchy;

@@ -111,7 +111,8 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     const Stopwatch drawing;
     std::optional<DepthWindow> window;
     if (ray_cuts(scene).any()) window.emplace(scene, camera, size, volume_->units().length);
-    statistics.counts.fragments = draw(image, ScreenTransform(camera, size), window ? window->pixels() : std::span<const DepthInterval>{});
+    const bool seen = volume_->empty_cells() < scene.grid->cell_count();  // besides slices and bodies
+    if (seen) statistics.counts.fragments = draw(image, ScreenTransform(camera, size), window ? window->pixels() : std::span<const DepthInterval>{});
     if (window) window->add_opaque(image);
     statistics.ms.draw = drawing.ms();
     statistics.ms.total = total.ms();
@@ -127,7 +128,7 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     statistics.drawn_as = "grid";
     statistics.order = "none";  // rays meet their cells one after the other
     statistics.order_exact = true;
-    statistics.plan = plan_of(scene, quality, {Backend::cpu, statistics.counts.cells, statistics.counts.drawn, surfaces_.medium});
+    statistics.plan = plan_of(scene, quality, {.rays = true, .cells = statistics.counts.cells, .drawn = statistics.counts.drawn, .medium = surfaces_.medium});
     *out = std::move(statistics);
     return image;
 }

@@ -58,6 +58,7 @@ struct GridRays {
     alignas(64) std::array<std::array<float, count>, 3> origin;     // where they enter the grid [axis units]
     alignas(64) std::array<std::array<float, count>, 3> direction;  // change of that place per length
     alignas(64) std::array<float, count> length;                    // inside the grid; 0: the ray misses it
+    bool cut = false;  // some lengths end inside of it
 };
 
 // Composites the grid along a tile's rays. Returns the number of segments.

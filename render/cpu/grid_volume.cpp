@@ -214,6 +214,7 @@ void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int w
                      per_row = (ray_at(0.5, height + 0.5) - first) / double(height);
     const glm::dvec3 eye = transform.ray({x + 0.5, y + 0.5}).origin;
     const auto columns = static_cast<std::size_t>(transform.size().width);
+    rays.cut = !window.empty();
     for (int row = 0; row < height; ++row)
         for (int column = 0; column < width; ++column) {
             const glm::dvec3 place = first + double(column) * per_column + double(row) * per_row;

@@ -54,6 +54,8 @@ public:
             axis.cell = cell_at(a, axis.origin, hn::Zero(d), last);
             t_end_ = hn::Min(t_end_, plane_ahead(a, hn::IfThenElseZero(up, last)));
         }
+        cut_ = rays.cut;
+        if (cut_) t_end_ = hn::Min(t_end_, length_);
         find_ids();
         if (!grid.constant) scalar_ = interpolate(t_);
     }
@@ -192,7 +194,8 @@ protected:
     HWY_INLINE V between(V low, V high, V share) const { return hn::MulAdd(hn::Sub(high, low), share, low); }
     HWY_INLINE V in_unit(V x) const { return hn::Min(hn::Max(x, hn::Zero(d_)), hn::Set(d_, 1.0F)); }
 
-    // The bilinear scalar on the face where the ray leaves. `bounded`: never beyond those of the face's corners.
+    // The bilinear scalar on the face where the ray leaves; where it is cut in the cell, the trilinear one there. `bounded`: never beyond those
+    // of the corners of the face.
     template <bool bounded>
     HWY_INLINE V scalar_at_face(const Ahead& ahead) const {
         const M by_x = ahead.by_x, by_y = ahead.by_y;
@@ -209,10 +212,16 @@ protected:
         const VI corner = hn::Add(value_id_, hn::IfThenElseZero(hn::RebindMask(di_, hn::Gt(up, hn::Zero(d_))), across));
         const VI opposite = hn::Add(corner, second);
         const V c0 = value(corner), c1 = value(hn::Add(corner, first)), c2 = value(opposite), c3 = value(hn::Add(opposite, first));
-        const V scalar = between(between(c0, c1, u), between(c2, c3, u), v);
-        if constexpr (!bounded) return in_unit(scalar);
-        const V least = hn::Min(hn::Min(c0, c1), hn::Min(c2, c3)), most = hn::Max(hn::Max(c0, c1), hn::Max(c2, c3));
-        return hn::Min(hn::Max(scalar, least), most);
+        V scalar = between(between(c0, c1, u), between(c2, c3, u), v);
+        if constexpr (bounded) {
+            const V least = hn::Min(hn::Min(c0, c1), hn::Min(c2, c3)), most = hn::Max(hn::Max(c0, c1), hn::Max(c2, c3));
+            scalar = hn::Min(hn::Max(scalar, least), most);
+        } else {
+            scalar = in_unit(scalar);
+        }
+        if (!cut_) return scalar;
+        const M inside = hn::And(hn::And(ahead.last, active_), hn::Lt(ahead.leave, ahead.nearest));  // cut before the face
+        return hn::AllFalse(d_, inside) ? scalar : hn::IfThenElse(inside, interpolate(ahead.leave), scalar);
     }
 
     HWY_INLINE V value(VI id) const { return hn::GatherIndex(d_, grid_.values, id); }
@@ -320,6 +329,7 @@ protected:
     const GridCells& grid_;
     Axis axes_[3];
     V t_, t_end_, length_, scalar_;
+    bool cut_;
     VI value_id_, cell_id_;
     M active_;
 };

@@ -25,14 +25,15 @@ double largest_point() {
     return range[1];
 }
 
-const Program& make_ready(const GridView& view, const SegmentShader& shader, Programs& programs,
-                          const std::string& defines, const WindowTexture* window) {
-    const Program& program = programs.of(shaders::grid_place_vert + shaders::grid_cell_vert + shader.vertex_source(),
-                                          shaders::grid_rays_frag + shaders::grid_cell_frag + shaders::light_glsl + shader.source(), view.defines() + defines + (window ? "#define WINDOW\n" : ""));
+const Program& make_ready(const GridView& view, const GridLight& light, Programs& programs, const std::string& defines,
+                          const WindowTexture* window) {
+    const Program& program = programs.of(shaders::grid_place_vert + shaders::grid_cell_vert + light.vertex_source(),
+                                         shaders::grid_rays_frag + light.fragment_source(shaders::grid_cell_frag),
+                                         view.defines() + light.defines() + defines + (window ? "#define WINDOW\n" : ""));
     view.set_place(program);
     view.set_rays(program);
     if (window) window->bind(program);
-    shader.bind(program);
+    light.bind(program);
     return program;
 }
 
@@ -47,12 +48,12 @@ bool about_square(const GridView& view) {
 
 }  // namespace
 
-GridFootprints::GridFootprints(const GridView& view, const SegmentShader& shader, Programs& programs,
+GridFootprints::GridFootprints(const GridView& view, const GridLight& light, Programs& programs,
                                const std::string& defines, const WindowTexture* window, TriangleStream& stream)
     : view_(view),
       stream_(stream),
-      points_(make_ready(view, shader, programs, defines + "#define POINTS\n", window)),
-      rectangles_(make_ready(view, shader, programs, defines, window)),
+      points_(make_ready(view, light, programs, defines + "#define POINTS\n", window)),
+      rectangles_(make_ready(view, light, programs, defines, window)),
       largest_point_(largest_point()),
       square_(about_square(view)) {
     double squared = 0.0;

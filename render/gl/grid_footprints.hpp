@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "render/gl/grid_surface_pass.hpp"
 #include "render/gl/grid_view.hpp"
 #include "render/gl/programs.hpp"
-#include "render/gl/segment_shader.hpp"
 #include "render/gl/triangle_stream.hpp"
 #include "render/gl/window_texture.hpp"
 
@@ -23,7 +23,7 @@ namespace cellproj::gl {
 class GridFootprints {
 public:
     // All must outlive this. `defines`: besides those of the view. `window`: what cuts the rays; null: nothing.
-    GridFootprints(const GridView& view, const SegmentShader& shader, Programs& programs, const std::string& defines,
+    GridFootprints(const GridView& view, const GridLight& light, Programs& programs, const std::string& defines,
                    const WindowTexture* window, TriangleStream& stream);
 
     // In their order. Returns the number of triangles, two for a square or rectangle.

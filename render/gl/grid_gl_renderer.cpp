@@ -4,6 +4,7 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,7 +19,7 @@
 #include "render/gl/shaders.hpp"
 #include "render/gl/window_texture.hpp"
 #include "render/grid_plan.hpp"
-#include "render/plan.hpp"
+#include "render/surface_method.hpp"
 
 namespace cellproj::gl {
 
@@ -34,7 +35,10 @@ void require_grid_drawn(const GridQuality& quality, bool surfaces) {
     const auto refuse = [](const char* option, const char* expected, const std::string& found, const char* advice) {
         throw Error({ErrorKind::option, option, expected, found, advice});
     };
-    if (surfaces) refuse("--iso", "no isosurfaces for a regular grid", "some", "draw the grid as tetrahedra (--as tets)");
+    if (surfaces && quality.sampling.light != GridSampling::Light::segment)
+        refuse("--sampling", "slabs by their two slices for isosurfaces", to_string(quality.sampling), "leave out pre or post");
+    if (surfaces && !takes_surfaces(quality.method))
+        refuse("--method", "a method of light per pixel, blended once, for isosurfaces", to_string(quality.method), "leave it out");
     // Between two faces the scalar is a cubic; segments of this backend are linear.
     if (quality.method.kind == MethodKind::exact)
         refuse("--method", "one that OpenGL draws for a regular grid", to_string(quality.method),
@@ -79,14 +83,20 @@ void GlGridRenderer::prepare_here(const GridScene& scene, const GridQuality& qua
     if (quality.sampling.cut != GridSampling::Cut::cells) require_sliced(*scene.grid, quality.sampling);
     const bool same_grid = volume_ && scene_.grid == scene.grid;
     const bool same_transfer = same_grid && scene_.transfer == scene.transfer;
+    const bool same_surfaces = same_grid && scene_.surfaces == scene.surfaces;
+    if (!same_grid || !same_surfaces) validate(scene);
     if (!same_grid) {
         volume_.reset();  // none of another scene behind a failure
         shader_.reset();
-        validate(scene);
         volume_.emplace(scene);
-    } else if (!same_transfer) {
-        volume_->set_transfer(*scene.grid, *scene.transfer);
     }
+    if (!same_surfaces) {
+        surfaces_.reset();
+        scene_.surfaces.reset();
+        if (has_surfaces(scene)) surfaces_.emplace(scene, volume_->units());
+    }
+    if (!same_surfaces || !same_transfer)
+        volume_->set_light(*scene.grid, *scene.transfer, surfaces_ ? std::span(surfaces_->thresholds()) : std::span<const float>());
     scene_ = scene;
     const bool same_light = quality_.method == quality.method && quality_.sampling == quality.sampling;
     if (!same_transfer || !shader_ || !same_light) prepare_light(quality, same_grid);
@@ -104,6 +114,7 @@ GlGridRenderer::Lengths GlGridRenderer::segment_lengths(const GridSampling& samp
 void GlGridRenderer::prepare_light(const GridQuality& quality, bool same_grid) {
     const GridUnits& units = volume_->units();
     const TransferFunction transfer = in_scene_units(*scene_.transfer, units.scalar_low, units.scalar_high, units.length);
+    medium_ = transfer.visible(0.0, 1.0);
     auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
     classified_ = {};
     const bool keeps = shader && same_grid && quality_.method == quality.method && quality_.sampling == quality.sampling;
@@ -154,16 +165,23 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     statistics.backend_version = driver_version();
     statistics.order = cells ? "slices" : to_string(quality.sampling);
     statistics.order_exact = true;
-    statistics.plan = plan_of(scene, quality, {.rays = false, .cells = statistics.counts.cells, .drawn = statistics.counts.drawn, .medium = true});
+    statistics.plan = plan_of(scene, quality, {.rays = false, .cells = statistics.counts.cells, .drawn = statistics.counts.drawn, .medium = medium_});
     *out = std::move(statistics);
     return image;
+}
+
+GridLight GlGridRenderer::light() {
+    if (!surfaces_) return {.shader = shader_.get()};
+    return {.shader = medium_ ? shader_.get() : nullptr,
+            .surfaces = &*surfaces_,
+            .gradients = surfaces_->smooth() ? &volume_->gradients(*scene_.grid) : nullptr};
 }
 
 void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, Statistics& statistics) {
     const std::string blending = blending_define(quality_.method);
     std::optional<const WindowTexture> kept;
     if (window) kept.emplace(*window, view.perspective() ? 0.0 : view.to_eye(glm::dvec3(0.0)).z, view.transform().size().width);
-    GridFootprints footprints(view, *shader_, programs_, blending, kept ? &*kept : nullptr, indices_);
+    GridFootprints footprints(view, light(), programs_, blending, kept ? &*kept : nullptr, indices_);
     std::optional<GridTemplates> templates;
     if (light_at_vertices(quality_.method))
         templates.emplace(view, volume_->units(), *shader_, programs_, blending, footprints, indices_, pairs_);
@@ -187,7 +205,10 @@ void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, cons
 
 void GlGridRenderer::draw_slabs(const GridView& view, Statistics& statistics) {
     const Stopwatch drawing;
-    statistics.counts.triangles = gl::draw_slabs(view, volume_->units(), quality_.sampling, *shader_, classified_, programs_,
+    const bool pre = quality_.sampling.light == GridSampling::Light::pre;
+    GridLight light = this->light();
+    if (pre) light.shader = nullptr;
+    statistics.counts.triangles = gl::draw_slabs(view, volume_->units(), quality_.sampling, light, pre ? &classified_ : nullptr, programs_,
                                                  blending_define(quality_.method), slabs_);
     statistics.counts.drawn = scene_.grid->cell_count();
     glFinish();

@@ -9,6 +9,7 @@
 #include "project/camera.hpp"
 #include "render/depth_window.hpp"
 #include "render/gl/context.hpp"
+#include "render/gl/grid_surface_pass.hpp"
 #include "render/gl/grid_view.hpp"
 #include "render/gl/grid_volume.hpp"
 #include "render/gl/objects.hpp"
@@ -40,6 +41,7 @@ private:
         double mean, longest;  // of segments [scene units]
     };
     Lengths segment_lengths(const GridSampling& sampling) const;
+    GridLight light();
     void draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, Statistics& statistics);
     void draw_slabs(const GridView& view, Statistics& statistics);
 
@@ -53,6 +55,8 @@ private:
     // Of quality_, for the prepared scene.
     std::unique_ptr<SegmentShader> shader_;
     Texture classified_;  // where points are classified
+    std::optional<GridSurfacePass> surfaces_;  // of scene_
+    bool medium_ = true;                       // whether there is light between them
 };
 
 }  // namespace cellproj::gl

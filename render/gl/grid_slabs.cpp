@@ -133,18 +133,16 @@ double slab_thickness(const Grid& grid, const GridUnits& units, const GridSampli
     return extent / units.length / sampling.slabs;
 }
 
-std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const SegmentShader& shader,
-                       const Texture& classified, Programs& programs, const std::string& defines, TriangleStream& stream) {
-    using Light = GridSampling::Light;
-    const bool pre = sampling.light == Light::pre;
-    const std::string own = "#define SLABS " + std::to_string(sampling.per_polygon) + '\n' + (pre ? "#define PRE\n" : "") +
-                            (sampling.light == Light::post ? "#define POST\n" : "");
-    const Program& program =
-        programs.of(shaders::grid_slab_vert + (pre ? shaders::no_cell_glsl : shader.vertex_source()),
-                     shaders::grid_rays_frag + shaders::grid_slab_frag + shaders::light_glsl + (pre ? std::string() : shader.source()),
-                     view.defines() + defines + own);
+std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const GridLight& light, const Texture* classified,
+                       Programs& programs, const std::string& defines, TriangleStream& stream) {
+    const std::string own = "#define SLABS " + std::to_string(sampling.per_polygon) + '\n' + (classified ? "#define PRE\n" : "") +
+                            (sampling.light == GridSampling::Light::post ? "#define POST\n" : "");
+    const Program& program = programs.of(shaders::grid_slab_vert + light.vertex_source(),
+                                         shaders::grid_rays_frag + light.fragment_source(shaders::grid_slab_frag + (classified ? shaders::light_glsl : "")),
+                                         view.defines() + defines + light.defines() + own);
     view.set_rays(program);
-    pre ? classified.bind(classified_unit) : shader.bind(program);
+    light.bind(program);
+    if (classified) classified->bind(classified_unit);
 
     Bounds box;
     glm::dvec3 scale, offset;

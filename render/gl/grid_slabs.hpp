@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "render/gl/grid_surface_pass.hpp"
 #include "render/gl/grid_view.hpp"
 #include "render/gl/programs.hpp"
 #include "render/gl/segment_shader.hpp"
@@ -30,8 +31,8 @@ double slab_thickness(const Grid& grid, const GridUnits& units, const GridSampli
 // The axis that the view is closest to.
 std::size_t nearest_axis(const GridView& view);
 
-// Draws all. Returns the number of triangles. `classified`: for GridSampling::Light::pre, at the points.
-std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const SegmentShader& shader,
-                       const Texture& classified, Programs& programs, const std::string& defines, TriangleStream& stream);
+// Draws all. Returns the number of triangles. `classified`: GridSampling::Light::pre, at the points; else null.
+std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const GridLight& light, const Texture* classified,
+                       Programs& programs, const std::string& defines, TriangleStream& stream);
 
 }  // namespace cellproj::gl

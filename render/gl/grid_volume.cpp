@@ -11,6 +11,8 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
+#include "render/grid_surfaces.hpp"
+#include "render/prepared_surfaces.hpp"
 
 namespace cellproj::gl {
 
@@ -55,9 +57,7 @@ GridVolume::GridVolume(const GridScene& scene)
     : units_((require_numbers(*scene.grid), units_of(*scene.grid))),
       mean_chord_(cellproj::mean_chord(*scene.grid, units_)),
       longest_chord_(find_longest_chord(*scene.grid, units_.length)),
-      values_(upload(*scene.grid, units_)) {
-    set_transfer(*scene.grid, *scene.transfer);
-}
+      values_(upload(*scene.grid, units_)) {}
 
 Texture GridVolume::classified(const Grid& grid, const TransferFunction& transfer) const {
     const GridDimensions n = grid.dimensions();
@@ -71,7 +71,18 @@ Texture GridVolume::classified(const Grid& grid, const TransferFunction& transfe
     return Texture::volume({n.ni, n.nj, n.nk}, texels);
 }
 
-void GridVolume::set_transfer(const Grid& grid, const TransferFunction& transfer) {
+const Texture& GridVolume::gradients(const Grid& grid) {
+    if (gradients_) return *gradients_;
+    const std::vector<glm::vec3> kept = kept_gradients(grid, units_);
+    std::vector<float> texels(4 * kept.size());
+    for_all(kept.size(), 65536, [&](std::size_t i) {
+        for (int axis = 0; axis < 3; ++axis) texels[4 * i + static_cast<std::size_t>(axis)] = kept[i][axis];
+    });
+    const GridDimensions n = grid.dimensions();
+    return gradients_.emplace(Texture::volume({n.ni, n.nj, n.nk}, texels));
+}
+
+void GridVolume::set_light(const Grid& grid, const TransferFunction& transfer, std::span<const float> thresholds) {
     drawn_.assign(grid.cell_count(), 0);
     const std::size_t nx = grid.axes[0].cells(), ny = grid.axes[1].cells();
     for_all(drawn_.size() / nx, 64, [&](std::size_t row) {
@@ -80,7 +91,8 @@ void GridVolume::set_transfer(const Grid& grid, const TransferFunction& transfer
             if (grid.is_blanked(cell)) continue;
             const auto corners = grid.corner_values(cell);
             const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
-            drawn_[row * nx + i] = transfer.visible(*low, *high) ? 1 : 0;
+            const bool crossed = !thresholds.empty() && level_of(thresholds, units_.kept(*low)) != level_of(thresholds, units_.kept(*high));
+            drawn_[row * nx + i] = crossed || transfer.visible(*low, *high) ? 1 : 0;
         }
     });
 }

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -20,7 +22,7 @@ public:
     explicit GridVolume(const GridScene& scene);
 
     const GridUnits& units() const { return units_; }
-    // Per cell: 0 for those that add nothing to any picture, blanked or without emission and extinction over their scalars.
+    // Since set_light. Per cell: 0 for those that add nothing to any picture, blanked or without emission and extinction over their scalars.
     const std::vector<std::uint8_t>& drawn() const { return drawn_; }
     const Texture& values() const { return values_; }
     double mean_chord() const { return mean_chord_; }
@@ -30,13 +32,17 @@ public:
     // Emission and extinction at the points, for slabs that interpolate them; of a function in scene units.
     Texture classified(const Grid& grid, const TransferFunction& transfer) const;
 
-    // Another function over the same grid.
-    void set_transfer(const Grid& grid, const TransferFunction& transfer);
+    // The gradients at the points (render/grid_surfaces.hpp), made when they are first asked for.
+    const Texture& gradients(const Grid& grid);
+
+    // Of the same grid: finds the cells that can be seen, by a function or as an isosurface crosses them (its threshold, ascending).
+    void set_light(const Grid& grid, const TransferFunction& transfer, std::span<const float> thresholds);
 
 private:
     GridUnits units_;
     double mean_chord_, longest_chord_;
     Texture values_;
+    std::optional<Texture> gradients_;
     std::vector<std::uint8_t> drawn_;
 };
 

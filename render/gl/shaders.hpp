@@ -10,7 +10,9 @@ namespace cellproj::gl::shaders {
 extern const std::string cell_vert;         // needs a prepare_cell behind it
 extern const std::string cell_frag;         // needs light_glsl and a light_of_segment behind it
 extern const std::string surfaces_vert;     // needs a prepare_cell behind it
-extern const std::string surfaces_frag;     // with a medium: what cell_frag needs
+extern const std::string surfaces_frag;     // needs reflected_glsl behind it; with a medium: what cell_frag needs
+extern const std::string reflected_glsl;
+extern const std::string grid_surfaces_glsl;  // with surfaces, between grid_rays_frag and what follows; needs reflected_glsl behind it
 extern const std::string light_glsl;
 extern const std::string grid_place_vert;   // needs grid_cell_vert or grid_lit_vert behind it
 extern const std::string grid_cell_vert;    // behind grid_place_vert; needs a prepare_cell behind it

@@ -1,59 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/gl/surface_pass.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include "mesh/error.hpp"
+#include "render/gl/surface_lists.hpp"
 
 namespace cellproj::gl {
 
 namespace {
 
 // Behind those of the methods (segment_shader.hpp).
-constexpr unsigned int surfaces_unit = 8, lights_unit = 9, layers_unit = 11, first_unit = 12;
-
-void append(std::vector<float>& texels, const glm::dvec3& v, double last) {
-    for (int axis = 0; axis < 3; ++axis) texels.push_back(static_cast<float>(v[axis]));
-    texels.push_back(static_cast<float>(last));
-}
-
-Texture upload(const PreparedSurfaces& surfaces) {
-    std::vector<float> texels;
-    for (std::size_t i = 0; i < surfaces.values().size(); ++i) {
-        const IsoSurface& surface = surfaces.scene().isosurfaces.surfaces()[i];
-        append(texels, {surfaces.thresholds()[i], surfaces.values()[i], surface.opacity}, 0.0);
-        append(texels, surface.opacity * seen_color(surface, true), surface.opacity);
-        append(texels, surface.opacity * seen_color(surface, false), surface.opacity);
-    }
-    if (texels.empty()) texels.resize(12);  // a medium that is lit, alone: read by what is not drawn
-    return Texture::list(texels);
-}
-
-// Directions of any finite length > 0.
-glm::dvec3 unit(const glm::dvec3& v) {
-    const glm::dvec3 size = glm::abs(v);
-    return glm::normalize(v / std::max({size.x, size.y, size.z}));
-}
-
-Texture upload(const std::vector<DirectionalLight>& lights) {
-    std::vector<float> texels;
-    for (const DirectionalLight& light : lights) {
-        append(texels, light.towards ? unit(*light.towards) : glm::dvec3(0.0), light.diffuse);
-        append(texels, light.color, light.specular);
-    }
-    if (texels.empty()) texels.resize(4);  // a list holds something
-    return Texture::list(texels);
-}
-
-// As most scenes have: nothing to be read, and no middle between two directions.
-bool has_one_headlight(const Lighting& lighting) { return lighting.lights.size() == 1 && !lighting.lights.front().towards; }
+constexpr unsigned int surfaces_unit = 8, layers_unit = 11, first_unit = 12;
 
 }  // namespace
 
@@ -69,7 +30,8 @@ SurfaceSides SurfacePass::sides_for(const SurfaceMethod& method) {
 }
 
 SurfacePass::SurfacePass(const PreparedScene& prepared, const SurfaceMethod& method)
-    : prepared_(prepared), method_(method), list_(upload(*prepared.surfaces())), lights_(upload(scene().lighting.lights)) {
+    : prepared_(prepared), method_(method), list_(surface_list(scene().isosurfaces, prepared.surfaces()->thresholds(), prepared.surfaces()->values())),
+      lights_(light_list(scene().lighting)) {
     assert(prepared.surfaces()->sides() == sides_for(method));
     if (method.kind != SurfaceMethodKind::exact) upload_tables();
 }
@@ -99,7 +61,8 @@ std::string SurfacePass::defines(bool perspective, bool nearest) const {
     const Shading shading = scene().shading;
     return std::string(perspective ? "#define PERSPECTIVE\n" : "") + (medium ? "#define MEDIUM\n" : "") +
            (medium && two_fields ? "#define TWO_FIELDS\n" : "") + (shading != Shading::unlit ? "#define LIT\n" : "") +
-           (has_one_headlight(scene().lighting) ? "#define HEADLIGHT\n" : "") + (prepared_.lights_medium() ? "#define LIT_MEDIUM\n" : "") + (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
+           lighting_defines(scene().lighting) + (prepared_.lights_medium() ? "#define LIT_MEDIUM\n" : "") +
+           (shading == Shading::smooth ? "#define SMOOTH\n" : "") + (nearest ? "#define NEAREST\n" : "") +
            (method_.kind != SurfaceMethodKind::exact ? "#define TABLE\n" : "") +
            (method_.kind == SurfaceMethodKind::combined ? "#define COMBINED\n" : "");
 }
@@ -132,16 +95,7 @@ void SurfacePass::bind(const Program& program, const CellStream& cells, const Ne
     }
     if (!lit) return;
 
-    const Lighting& lighting = scene().lighting;
-    set("two_sided", lighting.two_sided ? 1.0 : 0.0);
-    if (has_one_headlight(lighting)) {
-        const DirectionalLight& light = lighting.lights.front();
-        program.set("headlight_diffuse", glm::vec4(light.diffuse * light.color, 0.0));
-        program.set("headlight_specular", glm::vec4(light.specular * light.color, 0.0));
-    } else {
-        set("light_count", static_cast<double>(lighting.lights.size()));
-    }
-    program.set("ambient", glm::vec4(lighting.ambient, lighting.exponent));
+    set_lighting(program, scene().lighting);
     // The rows of the rotation, seen through what it makes of the axes.
     const glm::dvec3 x = transform.to_eye({1, 0, 0}), y = transform.to_eye({0, 1, 0}), z = transform.to_eye({0, 0, 1});
     if (perspective) {

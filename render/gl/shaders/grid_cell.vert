@@ -3,6 +3,9 @@
 // square (vertex = cell), else a rectangle (vertex = 4 * cell + corner). Behind grid_place.vert.
 flat out vec3 v_low, v_high, v_inverse_edges;
 flat out vec4 v_bottom, v_top;
+#ifdef SURFACES
+flat out vec3 v_cell;
+#endif
 
 // What the method wants to know of a cell between two scalars.
 void prepare_cell(float low, float high);
@@ -62,6 +65,9 @@ void main() {
 #endif
     v_low = box.low;
     v_high = box.high;
+#ifdef SURFACES
+    v_cell = vec3(box.cell);
+#endif
     v_inverse_edges = 1.0 / (box.high - box.low);
     corner_scalars(box.cell, v_bottom, v_top);
     vec4 low = min(v_bottom, v_top), high = max(v_bottom, v_top);

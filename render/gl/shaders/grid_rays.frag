@@ -28,17 +28,28 @@ Ray ray_of_pixel() {
 #endif
 }
 
-// Where the ray enters and leaves; nothing lies between where the first is not less. Boxes that share a plane get the same number for it.
-vec2 part_between(Ray ray, vec3 low, vec3 high) {
+struct Crossings {
+    vec3 low, high;  // where the ray crosses the planes of a box
+};
+
+// Boxes that share a plane get the same number for it.
+Crossings crossings_of(Ray ray, vec3 low, vec3 high) {
 #ifdef PERSPECTIVE
     // The eye is the origin: of two boxes on whose common plane a ray runs, the one below it ends there at once.
-    vec3 to_low = low, to_high = high;
+    return Crossings(low * ray.inverse, high * ray.inverse);
+#else
+    return Crossings((low - ray.origin - nudge) * ray.inverse, (high - ray.origin - nudge) * ray.inverse);
+#endif
+}
+
+// Where the ray enters and leaves; nothing lies between where the first is not less.
+vec2 part_between(Crossings at) {
+#ifdef PERSPECTIVE
     float from = 0.0;
 #else
-    vec3 to_low = low - ray.origin - nudge, to_high = high - ray.origin - nudge;
     float from = -1e30;
 #endif
-    vec3 at_low = to_low * ray.inverse, at_high = to_high * ray.inverse;
-    vec3 nearer = min(at_low, at_high), farther = max(at_low, at_high);
+    vec3 nearer = min(at.low, at.high), farther = max(at.low, at.high);
     return vec2(max(max(from, nearer.x), max(nearer.y, nearer.z)), min(farther.x, min(farther.y, farther.z)));
 }
+vec2 part_between(Ray ray, vec3 low, vec3 high) { return part_between(crossings_of(ray, low, high)); }
