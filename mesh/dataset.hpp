@@ -54,6 +54,14 @@ struct BoxGrid {
     std::vector<std::uint8_t> blanked;  // 1 for a cell of the file that is left out, i fastest; empty when none is
 };
 
+// One piece of a hierarchy of grids (grid_pieces.hpp): its boxes, of which those under finer pieces are blanked, and how many of the
+// dataset's points and cells are its own.
+struct PieceRows {
+    std::string name;  // for messages: its file, or its place in the file
+    BoxGrid boxes;
+    std::size_t points = 0, cells = 0;
+};
+
 struct Dataset {
     std::string source;                        // the file, for messages
     std::string format;                        // in words: "VTK XML unstructured grid"
@@ -61,6 +69,7 @@ struct Dataset {
     std::optional<GridDimensions> grid;        // set for a curvilinear grid; then `cells` is empty
     CellList cells;                            // set otherwise
     std::optional<BoxGrid> boxes;              // set when the cells are those of one grid along x, y and z
+    std::vector<PieceRows> pieces;             // of a hierarchy of grids, one behind the other; `cells` has what is visible of them
     std::vector<Field> point_fields;           // each with #P rows
     std::vector<Field> cell_fields;            // each with one row per cell
     std::size_t skipped_cells = 0;             // cells that are no volumes: points, lines, surfaces

@@ -169,16 +169,14 @@ double interpolate(const std::array<double, 8>& corner_values, const glm::dvec3&
     return sum;
 }
 
-Grid make_grid(const Dataset& dataset, const ScalarField& field) {
-    require_one_grid(dataset);
+Grid make_piece_grid(const BoxGrid& boxes, const ScalarField& field, const std::string& place) {
     Grid grid;
-    grid.axes = dataset.boxes->axes;
+    grid.axes = boxes.axes;
     std::array<bool, 3> descends{};
     for (std::size_t a = 0; a < 3; ++a)
-        descends[a] = require_monotonic(grid.axes[a], dataset.source + ", axis " + axis_names[a]) < 0;
+        descends[a] = require_monotonic(grid.axes[a], place + ", axis " + axis_names[a]) < 0;
     grid.location = field.location;
-    grid.blanked = dataset.boxes->blanked;
-    const std::string place = dataset.source + ", field \"" + field.name + "\"";
+    grid.blanked = boxes.blanked;
     if (field.location == FieldLocation::points) {
         grid.values = spread(field.values, kept_points(grid.dimensions(), grid.blanked), place);
     } else {
@@ -189,6 +187,16 @@ Grid make_grid(const Dataset& dataset, const ScalarField& field) {
     }
     make_ascending(grid, descends);
     blank_cells_without_value(grid);
+    return grid;
+}
+
+Grid make_grid(const Dataset& dataset, const ScalarField& field) {
+    require_one_grid(dataset);
+    // Axes are told of without the field, which has no part in them.
+    for (std::size_t a = 0; a < 3; ++a)
+        require_monotonic(dataset.boxes->axes[a], dataset.source + ", axis " + axis_names[a]);
+    const std::string place = dataset.source + ", field \"" + field.name + "\"";
+    Grid grid = make_piece_grid(*dataset.boxes, field, place);
     if (!grid.blanked.empty() && std::count(grid.blanked.begin(), grid.blanked.end(), 0) == 0) {
         refuse_grid(place, "a cell with finite values", "none", "choose another field");
     }

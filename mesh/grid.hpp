@@ -57,6 +57,9 @@ double interpolate(const std::array<double, 8>& corner_values, const glm::dvec3&
 // - no cell is left.
 Grid make_grid(const Dataset& dataset, const ScalarField& field);
 
+// The same for boxes of which all cells may be left out: a piece of a hierarchy (grid_hierarchy.hpp). `place` is that of the values.
+Grid make_piece_grid(const BoxGrid& boxes, const ScalarField& field, const std::string& place);
+
 // Throws Error (data) at `place` when a grid made by hand is not what `Grid` says: axes, number of values or of blanked
 // cells, a value that is not finite at a cell that is not blanked.
 void validate(const Grid& grid, const std::string& place);

@@ -35,6 +35,8 @@ struct ReadOptions {
 // - VTK XML: unstructured, structured, rectilinear and image grids (.vtu .vts .vtr .vti), partitioned (.pvtu .pvts
 //   .pvtr .pvti), multi-block (.vtm) and collections, which are time series (.pvd); legacy VTK of the same four kinds
 //   (.vtk);
+// - hierarchies of uniform grids: VTK's AMR (.vth, .vthb), overlapping or not, and JSON files {"pieces": […]} that name
+//   the files of pieces (README.md); coarse cells under finer ones are left out and count as ghost cells;
 // - OpenFOAM cases, reconstructed or decomposed, given by their folder, system/controlDict or a file .foam: the
 //   internal mesh of each region with its cell fields;
 // - EnSight Gold (.case), Exodus II (.e .ex2 .exo; displacements are a field, not applied), CGNS (ADF and HDF5);

@@ -19,6 +19,7 @@
 
 #include "mesh/dataset.hpp"
 #include "mesh/raw_volume.hpp"
+#include "mesh/read.hpp"
 
 namespace cellproj {
 
@@ -63,5 +64,9 @@ Dataset read_plot3d(const std::filesystem::path& file, const std::filesystem::pa
 // not exactly that of the header and the numbers (the message says which volumes would fit), Error (option) for
 // dimensions below 2, more points than ids, or a spacing of 0.
 Dataset read_raw(const std::filesystem::path& file, const RawVolume& raw);
+
+// A hierarchy of grids from the JSON that names its pieces (README.md), each read as its own format, with VTK's help where that needs it.
+// Throws Error besides as `read` and `assemble_pieces` do.
+Dataset read_hierarchy(const std::filesystem::path& file, const ReadOptions& options);
 
 }  // namespace cellproj

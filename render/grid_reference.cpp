@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/grid_reference.hpp"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -206,13 +203,16 @@ std::vector<PixelTruth> GridReference::pixels(const Camera& camera, ImageSize si
     validate(camera, "camera");
     validate(size, "size");
     const ScreenTransform transform(camera, size);
-    std::vector<PixelTruth> truths(pixels.size());
-    using Range = oneapi::tbb::blocked_range<std::size_t>;
-    oneapi::tbb::parallel_for(Range(0, pixels.size(), 64), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i)
-            truths[i] = truth_of_pixel(pixels[i], slack, [&](const glm::dvec2& place) { return light(transform.ray(place), transform.perspective()); });
+    return truths_of(pixels, size, slack, [&](const glm::dvec2& place) { return light(transform.ray(place), transform.perspective()); });
+}
+
+std::vector<PixelId> GridReference::sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed) const {
+    validate(camera, "camera");
+    validate(size, "size");
+    const ScreenTransform transform(camera, size);
+    return sample_pixels(size, count, seed, [&](const glm::dvec2& place) {
+        return !cells_along(*scene_.grid, transform.ray(place), transform.perspective()).empty();
     });
-    return truths;
 }
 
 }  // namespace cellproj

@@ -18,6 +18,7 @@
 // size, its distance from the origin or the eye's distance. Tests: grid_reference_test.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -67,9 +68,12 @@ public:
     std::vector<GridSurfaceHit> surfaces_along(const ScreenTransform::Ray& ray, bool from_origin) const;
     glm::dvec3 gradient_at(const GridSurfaceHit& hit) const;
 
-    // The truth of these pixels, in their order; `slack` as of Reference::pixels. Parallel over pixels, the same for any
-    // number of threads. Throws Error (option) for an unusable camera or size.
+    // The truth of these pixels, in their order (truths_of). Throws Error (option) for an unusable camera or size or a
+    // pixel outside the picture.
     std::vector<PixelTruth> pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels, double slack = 0) const;
+
+    // `count` different pixels that see a cell of the grid, spread evenly (sample_pixels). Throws as `pixels`.
+    std::vector<PixelId> sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed = 1) const;
 
 private:
     struct Piece;

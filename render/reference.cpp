@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/reference.hpp"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <string>
 #include <utility>
 
@@ -21,44 +17,6 @@
 namespace cellproj {
 
 namespace {
-
-using Range = oneapi::tbb::blocked_range<std::size_t>;
-
-void check_pixel(PixelId pixel, int width, int height) {
-    if (pixel.x >= 0 && pixel.x < width && pixel.y >= 0 && pixel.y < height) return;
-    throw Error({ErrorKind::option, "pixel",
-                 "one of a picture of " + std::to_string(width) + "x" + std::to_string(height) + " pixels",
-                 "(" + std::to_string(pixel.x) + ", " + std::to_string(pixel.y) + ")", "give column and row, from 0"});
-}
-
-glm::dvec2 center(PixelId pixel) { return {pixel.x + 0.5, pixel.y + 0.5}; }
-
-// Position along a Morton curve: the bits of x and y in turn.
-std::uint64_t morton(PixelId pixel) {
-    std::uint64_t code = 0;
-    for (int bit = 0; bit < 16; ++bit) {
-        code |= (static_cast<std::uint64_t>(pixel.x) >> bit & 1U) << (2 * bit) |
-                (static_cast<std::uint64_t>(pixel.y) >> bit & 1U) << (2 * bit + 1);
-    }
-    return code;
-}
-
-// One pixel at random from each block of k by k.
-std::vector<PixelId> candidates(ImageSize size, std::mt19937_64& random) {
-    const double millions = static_cast<double>(size.width) * size.height / (1 << 20);
-    const int k = std::max(1, static_cast<int>(std::ceil(std::sqrt(millions))));
-    std::vector<PixelId> pixels;
-    for (int y = 0; y < size.height; y += k) {
-        for (int x = 0; x < size.width; x += k) {
-            const auto offset = [&](int room) {
-                return static_cast<int>(random() % static_cast<std::uint64_t>(std::min(k, room)));
-            };
-            const int dx = offset(size.width - x), dy = offset(size.height - y);
-            pixels.push_back({x + dx, y + dy});
-        }
-    }
-    return pixels;
-}
 
 // Distances of the values of one kind, collected pixel by pixel.
 class Errors {
@@ -91,18 +49,6 @@ double outside(double value, double low, double high) {
 }
 
 }  // namespace
-
-PixelTruth truth_of_pixel(PixelId pixel, double slack, const std::function<Light(const glm::dvec2&)>& light_at) {
-    const Light at_center = light_at(center(pixel));
-    PixelTruth truth{pixel, at_center, at_center, at_center};
-    if (!(slack > 0)) return truth;
-    for (const glm::dvec2& offset : {glm::dvec2(1, 1), glm::dvec2(-1, 1), glm::dvec2(1, -1), glm::dvec2(-1, -1)}) {
-        const Light beside = light_at(center(pixel) + slack * offset);
-        truth.low = {glm::min(truth.low.color, beside.color), std::min(truth.low.opacity, beside.opacity)};
-        truth.high = {glm::max(truth.high.color, beside.color), std::max(truth.high.opacity, beside.opacity)};
-    }
-    return truth;
-}
 
 Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene_(std::move(scene)), index_(std::move(index)) {
     validate(scene_);
@@ -221,16 +167,8 @@ std::vector<PixelTruth> Reference::pixels(const Camera& camera, ImageSize size, 
                                           double slack) const {
     validate(camera, "camera");
     validate(size, "size");
-    for (const PixelId& pixel : pixels)
-        check_pixel(pixel, size.width, size.height);
-    std::vector<PixelTruth> truths(pixels.size());
-    const auto look = [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            truths[i] = truth_of_pixel(pixels[i], slack, [&](const glm::dvec2& place) { return light(index_->ray(camera, size, place)); });
-        }
-    };
-    oneapi::tbb::parallel_for(Range(0, pixels.size(), 64), look);
-    return truths;
+    return truths_of(pixels, size, slack,
+                     [&](const glm::dvec2& place) { return light(index_->ray(camera, size, place)); });
 }
 
 std::vector<PixelTruth> Reference::picture(const Camera& camera, ImageSize size, double slack) const {
@@ -241,26 +179,8 @@ std::vector<PixelTruth> Reference::picture(const Camera& camera, ImageSize size,
 std::vector<PixelId> Reference::sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed) const {
     validate(camera, "camera");
     validate(size, "size");
-    std::mt19937_64 random(seed);
-    const std::vector<PixelId> tried = candidates(size, random);
-    std::vector<std::uint8_t> meets(tried.size());
-    oneapi::tbb::parallel_for(Range(0, tried.size(), 64), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i)
-            meets[i] = index_->meets(index_->ray(camera, size, center(tried[i])));
-    });
-    std::vector<PixelId> seen;
-    for (std::size_t i = 0; i < tried.size(); ++i) {
-        if (meets[i]) seen.push_back(tried[i]);
-    }
-    std::sort(seen.begin(), seen.end(), [](PixelId a, PixelId b) { return morton(a) < morton(b); });
-    count = std::min(count, seen.size());
-    std::vector<PixelId> drawn;
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t begin = seen.size() * i / count, end = seen.size() * (i + 1) / count;
-        drawn.push_back(seen[begin + random() % (end - begin)]);
-    }
-    std::sort(drawn.begin(), drawn.end(), [](PixelId a, PixelId b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); });
-    return drawn;
+    return sample_pixels(size, count, seed,
+                         [&](const glm::dvec2& place) { return index_->meets(index_->ray(camera, size, place)); });
 }
 
 std::vector<PixelTruth> reference_pixels(const Scene& scene, const Camera& camera, ImageSize size,
@@ -281,14 +201,14 @@ std::vector<PixelId> all_pixels(ImageSize size) {
 Image to_image(std::span<const PixelTruth> truths, ImageSize size) {
     Image image(size.width, size.height);
     for (const PixelTruth& truth : truths) {
-        check_pixel(truth.pixel, size.width, size.height);
+        require_in_picture(truth.pixel, size);
         image.at(truth.pixel.x, truth.pixel.y) = glm::vec4(truth.light.color, truth.light.opacity);
     }
     return image;
 }
 
 glm::dvec4 error_of_pixel(const Image& image, const PixelTruth& truth) {
-    check_pixel(truth.pixel, image.width, image.height);
+    require_in_picture(truth.pixel, {image.width, image.height});
     const glm::vec4& found = image.at(truth.pixel.x, truth.pixel.y);
     glm::dvec4 error;
     for (int k = 0; k < 3; ++k)

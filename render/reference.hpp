@@ -24,44 +24,22 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include "mesh/gradient.hpp"
 #include "project/camera.hpp"
 #include "render/image.hpp"
+#include "render/pixel_truths.hpp"
 #include "render/ray_index.hpp"
 #include "render/ray_surfaces.hpp"
 #include "render/ray_window.hpp"
 #include "render/scene.hpp"
 
 namespace cellproj {
-
-struct PixelId {
-    int x, y;  // column and row, from the top left
-
-    bool operator==(const PixelId&) const = default;
-};
-
-// What a pixel should be: the light at its centre, and the range of each channel over the positions that a rasterizer may take
-// for it. Both ends are the centre's light unless a slack was asked for.
-struct PixelTruth {
-    PixelId pixel;
-    Light light;      // associated
-    Light low, high;  // channel by channel
-};
-
-// Of a pixel by the light at places on the screen [pixels]. With `slack` > 0, low and high take in that at the four places (±slack, ±slack)
-// from its centre.
-PixelTruth truth_of_pixel(PixelId pixel, double slack, const std::function<Light(const glm::dvec2&)>& light_at);
-
-// The slack of Reference::pixels for pictures whose vertices were put on a rasterizer's grid of 1/256 of a pixel [pixels].
-constexpr double rasterizer_slack = 1.0 / 512;
 
 // Keeps the index over a scene's mesh for any number of pictures. Immutable: any number of threads may ask at once.
 class Reference {
@@ -81,20 +59,14 @@ public:
     std::vector<SurfaceHit> surfaces_along(const ViewRay& ray) const;
     glm::dvec3 gradient_at(const SurfaceHit& hit) const;
 
-    // The truth of these pixels, in their order. Rasterizers move points to a grid of 1/256 of a pixel; their picture is one
-    // of a mesh moved by at most 1/512. With `slack` > 0 [pixels], low and high also take in the light at the four positions
-    // (±slack, ±slack) from the centre, which tells a silhouette that has moved by so little from an error. Costs five rays
-    // instead of one. Parallel over pixels, the same for any number of threads. Throws Error (option) for an unusable camera
-    // or size or a pixel outside the picture.
+    // The truth of these pixels, in their order (truths_of). Throws Error (option) for an unusable camera or size or a pixel outside the
+    // picture.
     std::vector<PixelTruth> pixels(const Camera& camera, ImageSize size, std::span<const PixelId> pixels,
                                    double slack = 0) const;
     // The whole picture, row by row: 104 bytes and, in usual scenes, some 30 µs of one core per pixel and ray.
     std::vector<PixelTruth> picture(const Camera& camera, ImageSize size, double slack = 0) const;
 
-    // `count` different pixels that see the mesh, spread evenly: the pixels that do (of pictures above a million pixels, one
-    // in each block of k by k, k² the number of pixels in millions) are cut into `count` runs along a Morton curve, and one is
-    // drawn from each. All of them when there are fewer. Ascending by row, then column; depends on the seed alone. Throws as
-    // `pixels`.
+    // `count` different pixels that see the mesh, spread evenly (sample_pixels). Throws as `pixels`.
     std::vector<PixelId> sample(const Camera& camera, ImageSize size, std::size_t count, std::uint64_t seed = 1) const;
 
 private:

@@ -57,49 +57,59 @@ std::string to_string(const Quality& quality) {
     return to_string(quality.method) + (exact ? "" : ", " + to_string(quality.surfaces)) + (usual ? "" : ", " + to_string(quality.target));
 }
 
-std::vector<FrameTimes> time_frames(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
-                                    std::span<const Quality> qualities, int rounds, const std::function<void()>& drawn) {
+std::vector<TradeWay> ways_of(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
+                              std::span<const Quality> qualities) {
+    std::vector<TradeWay> ways;
+    for (Quality quality : qualities) {
+        quality.check_neighbours = false;  // nobody reads it
+        ways.push_back({.name = to_string(quality),
+                        .quality = quality,
+                        .prepare = [=, &renderer] { renderer.prepare(scene, quality); },
+                        .render = [=, &renderer](Statistics* out) { return renderer.render(scene, camera, size, quality, out); }});
+    }
+    return ways;
+}
+
+std::vector<FrameTimes> time_frames(std::span<const TradeWay> ways, int rounds, const std::function<void()>& drawn) {
     assert(rounds >= 1);
-    std::vector<std::vector<double>> set_up(qualities.size()), frame(qualities.size());
+    std::vector<std::vector<double>> set_up(ways.size()), frame(ways.size());
     for (int round = 0; round < rounds; ++round) {
-        for (std::size_t i = 0; i < qualities.size(); ++i) {
+        for (std::size_t i = 0; i < ways.size(); ++i) {
             const Stopwatch preparing;
-            renderer.prepare(scene, qualities[i]);
+            ways[i].prepare();
             set_up[i].push_back(preparing.ms());
-            Quality quality = qualities[i];
-            quality.check_neighbours = false;  // nobody reads it
             Statistics statistics;
-            renderer.render(scene, camera, size, quality, &statistics);
+            ways[i].render(&statistics);
             frame[i].push_back(statistics.ms.total);
             if (drawn) drawn();
         }
     }
     std::vector<FrameTimes> times;
-    for (std::size_t i = 0; i < qualities.size(); ++i)
+    for (std::size_t i = 0; i < ways.size(); ++i)
         times.push_back({median(std::move(set_up[i])), median(std::move(frame[i]))});
     return times;
 }
 
-std::vector<TradeRow> measure_trade(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
-                                    std::span<const Quality> qualities, std::span<const PixelTruth> truths,
-                                    const TradeOptions& options) {
-    const std::size_t frames = qualities.size() * static_cast<std::size_t>(options.rounds + 1);
+std::vector<TradeRow> measure_trade(std::span<const TradeWay> ways, std::span<const PixelTruth> truths, const TradeOptions& options) {
+    const std::size_t frames = ways.size() * static_cast<std::size_t>(options.rounds + 1);
     std::size_t done = 0;
     const auto tell = [&] {
         if (options.progress) options.progress(++done, frames);
     };
     std::vector<TradeRow> rows;
-    for (const Quality& quality : qualities) {
+    for (const TradeWay& way : ways) {
         Statistics statistics;
-        Image image = renderer.render(scene, camera, size, quality, &statistics);
-        rows.push_back({.quality = quality,
+        Image image = way.render(&statistics);
+        rows.push_back({.name = way.name,
+                        .quality = way.quality,
+                        .sampling = way.sampling,
                         .backend = statistics.backend,
                         .table_bytes = statistics.table_bytes,
                         .error = compare(image, truths),
                         .image = options.keep_images ? std::move(image) : Image{}});
         tell();
     }
-    const std::vector<FrameTimes> times = time_frames(renderer, scene, camera, size, qualities, options.rounds, tell);
+    const std::vector<FrameTimes> times = time_frames(ways, options.rounds, tell);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         rows[i].set_up_ms = times[i].set_up_ms;
         rows[i].frame_ms = times[i].frame_ms;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The trade of speed for accuracy, measured on a scene: every method is timed, and judged by the reference ray caster.
+// The trade of speed for accuracy, measured on a scene: every method is timed, and judged by the reference ray caster. What is measured
+// are ways to one picture, whatever they draw it from: a mesh (here), a regular grid (grid_trade.hpp).
 #pragma once
 
 #include <cstddef>
@@ -10,14 +11,26 @@
 #include <string>
 #include <vector>
 
+#include "render/grid_sampling.hpp"
 #include "render/reference.hpp"
 #include "render/renderer.hpp"
 
 namespace cellproj {
 
-// What one choice of quality costs and how wrong it is.
+// One way to the picture.
+struct TradeWay {
+    std::string name;                            // for people: "integral, rgba8"
+    Quality quality;                             // its method, target and surfaces
+    std::optional<GridSampling> sampling = {};   // of a regular grid that is drawn as it is; none: tetrahedra
+    std::function<void()> prepare;               // all but drawing
+    std::function<Image(Statistics*)> render;
+};
+
+// What one way costs and how wrong it is.
 struct TradeRow {
+    std::string name;  // as in TradeWay, like the next two
     Quality quality;
+    std::optional<GridSampling> sampling = {};
     std::string backend;          // that drew it (Statistics::backend)
     double set_up_ms = 0;         // tables and shaders, for a scene that is prepared otherwise; median
     double frame_ms = 0;          // from camera to pixels in memory; median
@@ -36,26 +49,43 @@ std::vector<Quality> surface_qualities();
 // "integral", "integral, table:512, rgba8": the method, that of isosurfaces and the format of the framebuffer unless they are the usual ones.
 std::string to_string(const Quality& quality);
 
+// Who knows what the pixels should be: an even sample of so many of those that see something, and the truths of pixels, for pictures
+// whose points were put on a rasterizer's grid.
+struct TradeJudge {
+    std::function<std::vector<PixelId>(std::size_t count)> sample;
+    std::function<std::vector<PixelTruth>(std::span<const PixelId>)> truths;
+};
+
+// Of a Reference or a GridReference, which must live as long.
+template <class AnyReference>
+TradeJudge judge_by(const AnyReference& reference, const Camera& camera, ImageSize size) {
+    return {[&reference, camera, size](std::size_t count) { return reference.sample(camera, size, count); },
+            [&reference, camera, size](std::span<const PixelId> pixels) {
+                return reference.pixels(camera, size, pixels, rasterizer_slack);
+            }};
+}
+
 struct TradeOptions {
     int rounds = 5;  // ≥ 1; every round draws every choice once, so that what disturbs the machine disturbs all alike
     bool keep_images = true;  // in the rows: 16 bytes a pixel of memory for each
     std::function<void(std::size_t done, std::size_t of)> progress = {};  // after each frame
 };
 
-// One row per quality, in their order. `truths` are pixels of that picture (Reference::pixels). A first round, in which
-// the driver compiles shaders, is not counted. Throws as Renderer::render and `compare` do.
-std::vector<TradeRow> measure_trade(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
-                                    std::span<const Quality> qualities, std::span<const PixelTruth> truths,
+// The ways that these qualities are, named by them. The parts of the scene are kept, the renderer must live as long.
+std::vector<TradeWay> ways_of(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
+                              std::span<const Quality> qualities);
+
+// One row per way, in their order. `truths` are pixels of that picture (truths_of). A first round, in which the driver compiles
+// shaders, is not counted. Throws as the ways and `compare` do.
+std::vector<TradeRow> measure_trade(std::span<const TradeWay> ways, std::span<const PixelTruth> truths,
                                     const TradeOptions& options = {});
 
 struct FrameTimes {
     double set_up_ms = 0, frame_ms = 0;  // as in TradeRow
 };
 
-// The times alone, in the order of `qualities`, which should all have been drawn once before. `drawn` is called after each
-// frame.
-std::vector<FrameTimes> time_frames(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
-                                    std::span<const Quality> qualities, int rounds, const std::function<void()>& drawn = {});
+// The times alone, in the order of `ways`, which should all have been drawn once before. `drawn` is called after each frame.
+std::vector<FrameTimes> time_frames(std::span<const TradeWay> ways, int rounds, const std::function<void()>& drawn = {});
 
 // Sets on_front of all rows.
 void mark_front(std::span<TradeRow> rows);

@@ -23,7 +23,7 @@ double difference(const glm::vec4& a, const glm::vec4& b) {
 }
 
 // RMS and 99 % of the even sample, as pixels chosen for their errors would spoil both; the maximum of all.
-ImageError judge(const Image& image, const std::vector<PixelTruth>& even, const std::vector<PixelTruth>& suspects) {
+ImageError measured(const Image& image, const std::vector<PixelTruth>& even, const std::vector<PixelTruth>& suspects) {
     ImageError error = compare(image, even);
     const ImageError worst = compare(image, suspects);
     error.pixels += worst.pixels;
@@ -33,19 +33,18 @@ ImageError judge(const Image& image, const std::vector<PixelTruth>& even, const 
 }
 
 // Times those that keep the bound, and chooses.
-void choose(QualityChoice& choice, Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size,
-            double max_error, int rounds) {
+void choose(QualityChoice& choice, std::span<const TradeWay> ways, double max_error, int rounds) {
     std::vector<std::size_t> within;
-    std::vector<Quality> qualities;
+    std::vector<TradeWay> good;
     for (std::size_t i = 0; i < choice.candidates.size(); ++i) {
         if (largest(choice.candidates[i].error) > max_error) continue;
         within.push_back(i);
-        qualities.push_back(choice.candidates[i].quality);
+        good.push_back(ways[i]);
     }
     choice.met = !within.empty();
     choice.chosen = choice.candidates.size() - 1;
     if (!choice.met) return;
-    const std::vector<FrameTimes> times = time_frames(renderer, scene, camera, size, qualities, rounds);
+    const std::vector<FrameTimes> times = time_frames(good, rounds);
     for (std::size_t k = 0; k < within.size(); ++k) choice.candidates[within[k]].frame_ms = times[k].frame_ms;
     choice.chosen = *std::min_element(within.begin(), within.end(), [&](std::size_t a, std::size_t b) {
         return choice.candidates[a].frame_ms < choice.candidates[b].frame_ms;
@@ -66,38 +65,41 @@ std::vector<Method> choice_methods(double max_error) {
 
 QualityChoice choose_quality(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size, double max_error,
                              const ChoiceOptions& options) {
-    assert(max_error > 0);
     const Reference reference(scene);
-    const std::vector<PixelTruth> even =
-        reference.pixels(camera, size, reference.sample(camera, size, options.sample), rasterizer_slack);
-
-    QualityChoice choice;
-    choice.sample = choice.judged = even.size();
+    std::vector<Quality> qualities;
     for (const Method& method : choice_methods(max_error)) {
         Quality quality = options.base;
         quality.method = method;
-        if (!options.draws || options.draws(quality)) choice.candidates.push_back({quality, {}, 0});
+        if (!options.draws || options.draws(quality)) qualities.push_back(quality);
     }
-    assert(!choice.candidates.empty() && choice.candidates.back().quality.method.kind == MethodKind::exact);
-    const Image best = renderer.render(scene, camera, size, choice.candidates.back().quality);
-    const auto others = std::span(choice.candidates).first(choice.candidates.size() - 1);
+    assert(!qualities.empty() && qualities.back().method.kind == MethodKind::exact);
+    return choose_way(ways_of(renderer, scene, camera, size, qualities), judge_by(reference, camera, size), max_error, options);
+}
+
+QualityChoice choose_way(std::span<const TradeWay> ways, const TradeJudge& judge, double max_error, const ChoiceOptions& options) {
+    assert(max_error > 0 && !ways.empty());
+    const std::vector<PixelTruth> even = judge.truths(judge.sample(options.sample));
+    QualityChoice choice;
+    choice.sample = choice.judged = even.size();
+    for (const TradeWay& way : ways) choice.candidates.push_back({way.name, way.quality, way.sampling, {}, 0});
+    const Image best = ways.back().render(nullptr);
+    const std::size_t others = ways.size() - 1;
     std::vector<PixelId> suspects;
-    for (const Candidate& candidate : others) {
-        const auto found =
-            widest_differences(renderer.render(scene, camera, size, candidate.quality), best, options.suspects);
+    for (std::size_t i = 0; i < others; ++i) {
+        const auto found = widest_differences(ways[i].render(nullptr), best, options.suspects);
         suspects.insert(suspects.end(), found.begin(), found.end());
     }
     const auto by_row = [](PixelId a, PixelId b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); };
     std::sort(suspects.begin(), suspects.end(), by_row);
     suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
-    const std::vector<PixelTruth> suspected = reference.pixels(camera, size, suspects, rasterizer_slack);
+    const std::vector<PixelTruth> suspected = judge.truths(suspects);
     choice.judged += suspected.size();
     // All are judged by the suspects of each: where two differ, either may be wrong. Drawn once more, as one picture for each of
     // them at once is much memory where pictures are large.
-    for (Candidate& candidate : others)
-        candidate.error = judge(renderer.render(scene, camera, size, candidate.quality), even, suspected);
-    choice.candidates.back().error = judge(best, even, suspected);
-    choose(choice, renderer, scene, camera, size, max_error, options.rounds);
+    for (std::size_t i = 0; i < others; ++i)
+        choice.candidates[i].error = measured(ways[i].render(nullptr), even, suspected);
+    choice.candidates.back().error = measured(best, even, suspected);
+    choose(choice, ways, max_error, options.rounds);
     return choice;
 }
 

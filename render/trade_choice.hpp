@@ -10,6 +10,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "render/trade.hpp"
@@ -25,14 +28,16 @@ struct ChoiceOptions {
 };
 
 struct Candidate {
+    std::string name;  // as in TradeWay, like the next two
     Quality quality;
+    std::optional<GridSampling> sampling = {};
     ImageError error;     // RMS and 99 % over the even sample, the largest error over all judged pixels
     double frame_ms = 0;  // median, of those that keep the bound; otherwise 0
 };
 
 struct QualityChoice {
-    std::vector<Candidate> candidates;  // the last one is `exact`
-    std::size_t chosen = 0;             // the fastest of those that keep the bound; `exact` where none does
+    std::vector<Candidate> candidates;  // the last one is the most accurate: `exact`, for grids by OpenGL `integral`
+    std::size_t chosen = 0;             // the fastest of those that keep the bound; the last one where none does
     bool met = false;                   // whether the chosen one keeps the bound
     std::size_t sample = 0;             // pixels drawn evenly
     std::size_t judged = 0;             // all pixels with a truth
@@ -46,6 +51,9 @@ std::vector<Method> choice_methods(double max_error);
 // that no pixel sees has no error.
 QualityChoice choose_quality(Renderer& renderer, const Scene& scene, const Camera& camera, ImageSize size, double max_error,
                              const ChoiceOptions& options = {});
+
+// The same among any ways to one picture, of which the last one is the most accurate. At least one; `base` and `draws` do not count.
+QualityChoice choose_way(std::span<const TradeWay> ways, const TradeJudge& judge, double max_error, const ChoiceOptions& options = {});
 
 // The `count` pixels where two pictures of one size differ most, widest first; only such that differ at all. A value that is not
 // finite differs infinitely.

@@ -3,9 +3,12 @@
 // Regular grids as a user draws them: `cellproj render` of voxels, images and rectilinear grids.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -71,7 +74,7 @@ TEST_F(GridCommand, AGridIsDrawnAsItIs) {
 }
 
 TEST_F(GridCommand, WhatOnlyTetrahedraKnowIsDrawnByThem) {
-    for (const char* option : {"--iso 20 --iso-method table", "--order mpvo", "--cell-values averaged", "--verify-order", "--max-error 0.1"}) {
+    for (const char* option : {"--iso 20 --iso-method table", "--order mpvo", "--cell-values averaged", "--verify-order"}) {
         EXPECT_EQ(drawn_as(std::string(voxels) + " " + option), "tetrahedra") << option;
         std::filesystem::remove(folder_ / "p.png");
         expect_refused(std::string(voxels) + " --as grid " + option, {"regular grid", "--as tets"});
@@ -110,6 +113,61 @@ TEST_F(GridCommand, OpenGlDrawsCellsAndSlabs) {
     expect_refused(std::string(voxels) + " --sampling object:8:post --iso 20", {"--sampling", "object:8:post"});
     expect_refused(std::string(voxels) + " --sampling objects:8", {"--sampling", "did you mean \"object\""});
     expect_refused(std::string(voxels) + " --as grid --backend gl --method exact", {"--method", "exact"});
+}
+
+// Few pixels: the judge takes longest.
+TEST_F(GridCommand, ABoundChoosesAWayAndExplainTellsIt) {
+    const auto render = [&](const std::string& options) {
+        return run_program(folder_, std::string("render --size 36x30 -o p.png --stats s.json ") + voxels + " " + options);
+    };
+    const auto picture = [&] { return nlohmann::json::parse(content("s.json")).at("pictures").at(0); };
+    const Outcome outcome = render("--max-error 0.01 --explain");
+    ASSERT_EQ(outcome.code, 0) << outcome.text;
+    for (const char* words : {"--max-error 0.01: ", "  cells, integral", "  the fastest within it", "  order     none", "rays meet their cells", "  segments  "})
+        EXPECT_NE(outcome.text.find(words), std::string::npos) << "no \"" << words << "\" in: " << outcome.text;
+    EXPECT_LE(picture().at("error"), 0.01);
+    EXPECT_EQ(picture().at("drawn_as"), "grid");
+    EXPECT_EQ(render("--max-error 0.5 --backend gl --sampling object:12").code, 0);
+    EXPECT_EQ(picture().at("drawn_as"), "grid");
+    const Outcome never = render("--max-error 1e-9 --backend gl --sampling object:2:pre");
+    EXPECT_EQ(never.code, 0);
+    EXPECT_NE(never.text.find("warning: no method was within"), std::string::npos) << never.text;
+}
+
+// One table of all that draws the grid: rays, OpenGL's cells and slabs, and the tetrahedra it is cut into.
+TEST_F(GridCommand, TradeMeasuresEveryWaySideBySide) {
+    const auto trade = [&](const std::string& options) { return run_program(folder_, std::string("trade ") + voxels + " --size 30x30 --rounds 1 --json t.json " + options); };
+    const auto ways = [&] {
+        std::vector<std::string> found;
+        const auto json = nlohmann::json::parse(content("t.json"));
+        for (const auto& row : json.at("methods")) {
+            const std::string cut = row.at("sampling").is_null() ? row.at("drawn_as").get<std::string>() : row.at("sampling").get<std::string>();
+            found.push_back(cut + " " + row.at("method").get<std::string>() + " " + row.at("backend").get<std::string>());
+            EXPECT_LT(row.at("error").at("color").at("maximum"), 0.5) << found.back();
+        }
+        return found;
+    };
+    const Outcome all = trade("-o t.html --csv t.csv");
+    ASSERT_EQ(all.code, 0) << all.text;
+    const std::vector<std::string> found = ways();
+    for (const char* way : {"cells integral cpu", "cells exact:1e-05 cpu", "cells integral gl_osmesa", "cells homogeneous:vertices gl_osmesa",
+                            "object:5:post integral gl_osmesa", "view:20 integral gl_osmesa", "tetrahedra integral cpu"})
+        EXPECT_EQ(std::count(found.begin(), found.end(), way), 1) << way;
+    EXPECT_NE(all.text.find("tets, integral"), std::string::npos) << all.text;
+    EXPECT_NE(content("t.csv").find(",grid,object:5:post\n"), std::string::npos);
+    EXPECT_NE(content("t.html").find("<td>cells, integral<td>cpu"), std::string::npos);
+
+    ASSERT_EQ(trade("--sampling object:9 --sampling view:9").code, 0);
+    EXPECT_EQ(ways().size(), 2U);
+    ASSERT_EQ(trade("--backend cpu --method integral").code, 0);
+    EXPECT_EQ(ways().size(), 2U);  // as it is, and as tetrahedra
+    for (const auto& [options, words] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"--backend cpu --sampling object:9", "--backend gl"}, {"--as tets --sampling object:9", "--sampling"},
+             {"--method exact --sampling object:9", "--method"}, {"--sampling slabs:9", "object:N"}}) {
+        const Outcome refused = trade(options);
+        EXPECT_EQ(refused.code, 1) << options;
+        EXPECT_NE(refused.text.find(words), std::string::npos) << options << ": " << refused.text;
+    }
 }
 
 TEST_F(GridCommand, BadGridsAreRefusedWithTheirPlace) {

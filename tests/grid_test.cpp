@@ -3,7 +3,9 @@
 // Regular grids: the same grid out of every format that holds one, and what is none told clearly.
 #include "mesh/grid.hpp"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 
@@ -106,6 +108,34 @@ TEST(Grid, OutOfEveryFormatThatHoldsOne) {
     expect_the_grid(rectilinear);
     EXPECT_FALSE(rectilinear.axes[0].spacing);
     EXPECT_EQ(rectilinear.cell_bounds({2, 1, 0}).high, glm::dvec3(2.5, 4, 1));
+}
+
+// Numbers of two and four bytes in either order, out of every format that says which: their values tell whether they were swapped.
+TEST(Grid, EveryByteOrderGivesTheSameValues) {
+    const auto bytes = [](bool big, std::size_t width, bool real) {
+        std::string all;
+        for (std::size_t v = 0; v < point_count; ++v) {
+            const auto value = static_cast<float>(1000 * v);
+            const std::uint32_t bits = real ? std::bit_cast<std::uint32_t>(value) : static_cast<std::uint32_t>(1000 * v);
+            for (std::size_t b = 0; b < width; ++b) all += static_cast<char>(bits >> 8 * (big ? width - 1 - b : b) & 0xFFU);
+        }
+        return all;
+    };
+    for (const bool big : {false, true})
+        for (const bool real : {false, true}) {
+            const std::string data = bytes(big, real ? 4 : 2, real);
+            const std::string mha =
+                "ObjectType = Image\nNDims = 3\nDimSize = 10 3 2\nElementSpacing = 0.5 1 2\nOffset = 1 2 -1\nElementType = " +
+                std::string(real ? "MET_FLOAT" : "MET_USHORT") + "\nElementByteOrderMSB = " + (big ? "True" : "False") + "\nElementDataFile = LOCAL\n";
+            const std::string nrrd = std::string("NRRD0004\ntype: ") + (real ? "float" : "ushort") +
+                                     "\ndimension: 3\nsizes: 10 3 2\nspacings: 0.5 1 2\nendian: " + (big ? "big" : "little") + "\nencoding: raw\n\n";
+            const RawVolume raw{.dimensions = {10, 3, 2}, .type = real ? NumberType::float32 : NumberType::uint16, .big_endian = big};
+            for (const Grid& grid : {read_grid(write("o.mha", mha + data)), read_grid(write("o.nrrd", nrrd + data)), read_grid(write("o.raw", data), {.raw = raw})}) {
+                SCOPED_TRACE(big ? "big" : "little");
+                ASSERT_EQ(grid.values.size(), point_count);
+                for (std::size_t v = 0; v < point_count; ++v) EXPECT_EQ(grid.values[v], static_cast<double>(1000 * v));
+            }
+        }
 }
 
 TEST(Grid, UnevenAxesKeepTheirSteps) {

@@ -32,8 +32,9 @@ protected:
         write("v.raw", voxels);
     }
 
+    // As tetrahedra; grid_command_test draws the grid as it is.
     Outcome run(const std::string& command, const std::string& options) const {
-        return run_program(folder_, command + " v.raw --dims 3 3 3 --type uint8 --size 40x40 " + options);
+        return run_program(folder_, command + " v.raw --dims 3 3 3 --type uint8 --size 40x40 --as tets " + options);
     }
 
     std::vector<std::string> files() const {
@@ -76,7 +77,7 @@ TEST_F(TradeCommand, WritesTheSameTableFourTimes) {
     std::istringstream csv(content("t.csv"));
     std::string line;
     std::getline(csv, line);
-    EXPECT_EQ(line, "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front,iso_method");
+    EXPECT_EQ(line, "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front,iso_method,drawn_as,sampling");
     double last = 0;
     std::size_t front = 0;
     for (const auto& row : rows) {

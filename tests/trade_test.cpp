@@ -77,7 +77,7 @@ TEST(Trade, MeasuresErrorAndMemoryOfEachMethod) {
     const std::vector<Quality> qualities{{.method = {.kind = MethodKind::preint3d, .size = 8}}, {.method = {.kind = MethodKind::preint3d, .size = 64}}};
     const auto renderer = make_renderer(Backend::gl_osmesa);
     std::size_t frames = 0;
-    const auto rows = measure_trade(*renderer, scene, camera, size, qualities, truths,
+    const auto rows = measure_trade(ways_of(*renderer, scene, camera, size, qualities), truths,
                                     {.rounds = 2, .progress = [&](std::size_t done, std::size_t of) {
                                          ++frames;
                                          EXPECT_EQ(done, frames);

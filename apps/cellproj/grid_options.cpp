@@ -26,7 +26,8 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
         refuse("--iso-method", "exact for isosurfaces of a regular grid", "a table");
     if (wishes.named_order) refuse("--order", "auto for a regular grid, whose cells need no sorting", "another order");
     if (wishes.quality.check_rays > 0) refuse("--verify-order", "a mesh, whose cells are sorted", "a regular grid");
-    if (wishes.measured_method) refuse("--max-error", "--method for a regular grid, such as exact:1e-3", "--max-error");
+    // The judge of grids knows neither clip regions nor bodies and slices.
+    if (wishes.measured_method && !text_of(options.cuts).empty()) refuse("--max-error", "--method for a regular grid that is cut, such as exact:1e-3", "--max-error");
     const GridQuality quality{wishes.quality.method, wishes.quality.target, wishes.sampling};
     require_grid_drawn(wishes.backend, quality, options.iso.any());
     require_grid_cut(quality, planned_cuts(options.cuts));
@@ -64,6 +65,17 @@ DrawnAs choose_drawn_as(const SceneOptions& options, const PictureWishes& wishes
         return DrawnAs::tets;
     }
     return slabs ? DrawnAs::grid : options.drawn_as;
+}
+
+void require_hierarchy_drawn(const SceneOptions& options, Backend backend, const GridQuality& quality) {
+    const auto refuse = [](const char* option, const char* expected, const std::string& found) {
+        throw Error({ErrorKind::option, option, expected, found, "leave it out, or draw the hierarchy as tetrahedra (--as tets)"});
+    };
+    if (quality.sampling.cut != GridSampling::Cut::cells) refuse("--sampling", "cells for a hierarchy of grids", to_string(quality.sampling));
+    if (backend != Backend::cpu) refuse("--backend", "cpu for a hierarchy of grids", to_string(backend));
+    if (options.iso.any()) refuse("--iso", "no isosurfaces for a hierarchy of grids", "some");
+    if (const std::string cuts = text_of(options.cuts); !cuts.empty()) refuse(cuts.c_str(), "no clipping planes, slices and bodies for a hierarchy of grids", "some");
+    require_grid_drawn(backend, quality, false);
 }
 
 }  // namespace cellproj::cli

@@ -35,4 +35,7 @@ ChosenBackend choose_grid_backend(BackendWish wish, const GridSampling& sampling
 // which tetrahedra do not know.
 DrawnAs choose_drawn_as(const SceneOptions& options, const PictureWishes& wishes);
 
+// Throws Error (option) for what is not drawn of hierarchies of grids as they are.
+void require_hierarchy_drawn(const SceneOptions& options, Backend backend, const GridQuality& quality);
+
 }  // namespace cellproj::cli

@@ -66,6 +66,18 @@ void print_blocks(const Input& input) {
     for (const std::string& name : input.blocks) std::printf("  %s\n", name.c_str());
 }
 
+void print_levels(const Input& input) {
+    if (input.levels.empty()) return;
+    std::size_t pieces = 0;
+    for (const InputLevel& level : input.levels) pieces += level.pieces;
+    std::printf("hierarchy   %zu levels, %zu pieces\n", input.levels.size(), pieces);
+    for (std::size_t l = 0; l < input.levels.size(); ++l) {
+        const InputLevel& level = input.levels[l];
+        std::printf("  level %-3zu spacing %gx%gx%g, %zu pieces, %zu of %zu cells visible\n", l, level.spacing.x, level.spacing.y, level.spacing.z, level.pieces,
+                    level.visible, level.cells);
+    }
+}
+
 void print_times(const Input& input) {
     if (!input.time) return;
     if (input.times.size() == 1) {
@@ -132,9 +144,11 @@ void print_info(const InputOptions& options) {
     print_points(input);
     std::printf("cells       %s", input.cells.c_str());
     if (input.skipped_cells > 0) std::printf(" (%zu more are no volumes and are skipped)", input.skipped_cells);
-    if (input.ghost_cells > 0) std::printf(" (%zu more are hidden, blanked or copies and left out)", input.ghost_cells);
+    if (input.ghost_cells > 0) std::printf(" (%zu more are %s and left out)", input.ghost_cells,
+                                          input.levels.empty() ? "hidden, blanked or copies" : "under finer ones, hidden or blanked");
     std::printf("\n");
     print_tetrahedra(input);
+    print_levels(input);
     print_blocks(input);
     print_times(input);
     print_size(mesh);

@@ -13,6 +13,7 @@
 
 #include "apps/scenes/sphere_flow.hpp"
 #include "mesh/error.hpp"
+#include "mesh/grid_pieces.hpp"
 #include "mesh/read.hpp"
 #include "progress.hpp"
 #include "render/statistics.hpp"
@@ -52,16 +53,17 @@ std::vector<double> counted(std::size_t n) {
     return numbers;
 }
 
-const std::map<std::string, NumberType> number_types{
-    {"int8", NumberType::int8},     {"uint8", NumberType::uint8},   {"int16", NumberType::int16},
-    {"uint16", NumberType::uint16}, {"int32", NumberType::int32},   {"uint32", NumberType::uint32},
-    {"float32", NumberType::float32}, {"float64", NumberType::float64}};
+const std::map<std::string, NumberType> types_by_name = [] {
+    std::map<std::string, NumberType> types;
+    for (const NamedNumberType& named : number_types) types.emplace(named.name, named.type);
+    return types;
+}();
 
 void add_raw_options(CLI::App& command, InputOptions& options) {
     auto* dims = command.add_option("--dims", options.raw_dimensions, "FILE is bare voxels, NX NY NZ of them, x fastest")
                      ->expected(3)->type_name("NX NY NZ");
     auto* type = command.add_option("--type", options.raw_type, "Their type")
-                     ->check(CLI::IsMember(number_types))->type_name("TYPE");
+                     ->check(CLI::IsMember(types_by_name))->type_name("TYPE");
     dims->needs(type);
     type->needs(dims);
     command.add_flag("--big-endian", options.raw.big_endian, "Their bytes have the highest first")->needs(dims);
@@ -83,9 +85,29 @@ ReadOptions read_options(const InputOptions& options) {
     const auto vector3 = [](const std::vector<double>& v) { return glm::dvec3(v[0], v[1], v[2]); };
     result.raw->spacing = vector3(options.raw_spacing);
     result.raw->origin = vector3(options.raw_origin);
-    result.raw->type = number_types.at(options.raw_type);
+    result.raw->type = types_by_name.at(options.raw_type);
     result.raw->dimensions = {options.raw_dimensions[0], options.raw_dimensions[1], options.raw_dimensions[2]};
     return result;
+}
+
+std::vector<InputLevel> levels_of(const Dataset& dataset) {
+    std::vector<std::array<GridAxis, 3>> axes;
+    std::vector<std::string> names;
+    for (const PieceRows& piece : dataset.pieces) {
+        axes.push_back(piece.boxes.axes);
+        names.push_back(piece.name);
+    }
+    if (axes.empty()) return {};
+    const Lattice lattice = place_pieces(axes, names, dataset.source);
+    std::vector<InputLevel> levels(static_cast<std::size_t>(lattice.levels));
+    for (std::size_t p = 0; p < axes.size(); ++p) {
+        InputLevel& level = levels[static_cast<std::size_t>(lattice.pieces[p].level)];
+        level.spacing = {*axes[p][0].spacing, *axes[p][1].spacing, *axes[p][2].spacing};
+        ++level.pieces;
+        level.cells += axes[p][0].cells() * axes[p][1].cells() * axes[p][2].cells();
+        level.visible += dataset.pieces[p].cells;
+    }
+    return levels;
 }
 
 Input load_sphere_flow() {
@@ -157,7 +179,8 @@ Input load(const InputOptions& options, DrawnAs drawn_as) {
     input.read_ms = reading.ms();
 
     input.cells = cells_in_words(dataset);
-    if (drawn_as == DrawnAs::grid || (drawn_as == DrawnAs::automatic && dataset.boxes)) {
+    input.levels = levels_of(dataset);
+    if (drawn_as == DrawnAs::grid || (drawn_as == DrawnAs::automatic && (dataset.boxes || !dataset.pieces.empty()))) {
         auto mesh = std::make_shared<TetMesh>();
         mesh->points = std::move(dataset.points);
         mesh->point_fields = std::move(dataset.point_fields);
@@ -168,6 +191,7 @@ Input load(const InputOptions& options, DrawnAs drawn_as) {
         input.regular->format = dataset.format;
         input.regular->grid = dataset.grid;
         input.regular->boxes = std::move(dataset.boxes);
+        input.regular->pieces = std::move(dataset.pieces);
     } else {
         const Stopwatch splitting;
         const Progress progress("splitting cells");

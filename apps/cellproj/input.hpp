@@ -53,14 +53,21 @@ enum class DrawnAs {
     tets        // cut into tetrahedra
 };
 
+// One level of a hierarchy of grids, the coarsest first.
+struct InputLevel {
+    glm::dvec3 spacing{0};  // mesh units
+    std::size_t pieces = 0, cells = 0, visible = 0;  // cells that no finer piece covers
+};
+
 struct Input {
     std::string name;                       // for messages
     std::shared_ptr<const TetMesh> mesh;
-    std::optional<Dataset> regular;         // of a grid that is not cut: its axes; the mesh then has its points and fields, no cells
+    std::optional<Dataset> regular;         // of a grid, or a hierarchy of them, that is not cut: its axes; the mesh then has its points and fields, no cells
     TetrahedralizeReport report;
     std::string cells;                      // in words: "37479 hexahedra"
     std::string format;                     // in words
     std::optional<GridDimensions> grid;
+    std::vector<InputLevel> levels;         // of a hierarchy of grids; empty: none
     std::size_t skipped_cells = 0, ghost_cells = 0, skipped_blocks = 0;
     std::vector<std::string> blocks;        // names of the volume blocks; empty: one dataset
     std::vector<double> times;              // of the file's time steps; empty: none

@@ -14,10 +14,10 @@
 #include "grid_options.hpp"
 #include "mesh/error.hpp"
 #include "progress.hpp"
+#include "render/grid_trade.hpp"
 #include "render/output_file.hpp"
 #include "render/plan.hpp"
 #include "render/renderer.hpp"
-#include "render/trade_choice.hpp"
 #include "scene_options.hpp"
 
 namespace cellproj::cli {
@@ -32,6 +32,7 @@ struct RenderOptions {
     AnnotationOptions annotations;
     std::filesystem::path output, stats;
     std::string method = to_string(Method{}), target = to_string(Quality{}.target), order = "auto", sampling = "cells";
+    bool sampling_chosen = false;
     std::string iso_method = to_string(SurfaceMethod{});
     std::optional<double> max_error;  // --max-error: the method is chosen by measuring
     bool verify_order = false, explain = false;
@@ -144,15 +145,29 @@ void print_median(const std::vector<Statistics>& pictures) {
 void print_choice(const QualityChoice& choice, double max_error, const ChoiceOptions& how, std::size_t views) {
     std::printf("--max-error %g: %zu methods measured on %zu pixels%s, medians of %d frames\n", max_error,
                 choice.candidates.size(), choice.judged, views > 1 ? " of the first view" : "", how.rounds);
-    std::printf("  %-22s %10s %10s %9s\n", "method", "max error", "RMS error", "frame ms");
+    int wide = 22;
+    for (const Candidate& c : choice.candidates) wide = std::max(wide, static_cast<int>(c.name.size()));
+    std::printf("  %-*s %10s %10s %9s\n", wide, "method", "max error", "RMS error", "frame ms");
     for (std::size_t i = 0; i < choice.candidates.size(); ++i) {
         const Candidate& c = choice.candidates[i];
         const bool timed = largest(c.error) <= max_error;
         char ms[32] = "-";
         if (timed) std::snprintf(ms, sizeof ms, "%.1f", c.frame_ms);
-        std::printf("  %-22s %10.2e %10.2e %9s%s\n", to_string(c.quality.method).c_str(), largest(c.error), c.error.color.rms, ms,
+        std::printf("  %-*s %10.2e %10.2e %9s%s\n", wide, c.name.c_str(), largest(c.error), c.error.color.rms, ms,
                     i == choice.chosen ? choice.met ? "  the fastest within it" : "  taken, though above it" : "");
     }
+}
+
+// Prints a choice and warns where nothing is within the bound. The largest error of the chosen way.
+double tell_choice(const QualityChoice& choice, double max_error, const ChoiceOptions& how, std::size_t views, const char* cause) {
+    print_choice(choice, max_error, how, views);
+    const Candidate& chosen = choice.candidates[choice.chosen];
+    const double measured = largest(chosen.error);
+    if (!choice.met) {
+        std::fprintf(stderr, "cellproj: warning: no method was within --max-error %g on the judged pixels; %s is used, off by %.2g, which comes from %s\n",
+                     max_error, chosen.name.c_str(), measured, cause);
+    }
+    return measured;
 }
 
 Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene, const std::vector<Camera>& cameras, ImageSize size,
@@ -168,17 +183,50 @@ Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene,
         const Progress progress("choosing a method");
         return choose_quality(renderer, scene, cameras.front(), size, max_error, how);
     }();
-    print_choice(choice, max_error, how, cameras.size());
-    const Candidate& chosen = choice.candidates[choice.chosen];
-    measured = largest(chosen.error);
-    if (!choice.met) {
-        std::fprintf(stderr, "cellproj: warning: no method was within --max-error %g on the judged pixels; %s is used, off by %.2g, which comes from "
-                     "the order of the cells or the target, not from the method\n",
-                     max_error, to_string(chosen.quality).c_str(), measured);
-    }
+    measured = tell_choice(choice, max_error, how, cameras.size(), "the order of the cells or the target, not from the method");
     Quality quality = base;
-    quality.method = chosen.quality.method;
+    quality.method = choice.candidates[choice.chosen].quality.method;
     return quality;
+}
+
+// Likewise for a regular grid; `sampling`: the one that was asked for.
+GridQuality choose_measured(GridRenderer& renderer, Backend backend, const GridScene& scene, const std::vector<Camera>& cameras, ImageSize size,
+                            double max_error, const GridQuality& base, bool sampling_asked_for, double& measured) {
+    GridChoiceOptions options{.target = base.target};
+    if (sampling_asked_for) options.sampling = base.sampling;
+    const QualityChoice choice = [&] {
+        const Progress progress("choosing a method");
+        return choose_grid_quality(renderer, backend, scene, cameras.front(), size, max_error, options);
+    }();
+    measured = tell_choice(choice, max_error, options.how, cameras.size(), "the sampling, the backend or the target");
+    const Candidate& chosen = choice.candidates[choice.chosen];
+    return {chosen.quality.method, base.target, chosen.sampling.value_or(base.sampling)};
+}
+
+// Likewise for a hierarchy of grids.
+Method choose_measured(HierarchyRenderer& renderer, const HierarchyScene& scene, const std::vector<Camera>& cameras, ImageSize size, double max_error,
+                       double& measured) {
+    const ChoiceOptions how;
+    const QualityChoice choice = [&] {
+        const Progress progress("choosing a method");
+        return choose_hierarchy_method(renderer, scene, cameras.front(), size, max_error, how);
+    }();
+    measured = tell_choice(choice, max_error, how, cameras.size(), "single precision");
+    return choice.candidates[choice.chosen].quality.method;
+}
+
+// The scene, with a hierarchy of grids as tetrahedra where the renderer of hierarchies does not know what is asked for, unless --as grid was.
+LoadedScene load(const RenderOptions& options, DrawnAs drawn_as, const GridQuality& quality, Backend backend) {
+    LoadedScene loaded = load_scene(options.scene, drawn_as);
+    if (!loaded.hierarchy) return loaded;
+    try {
+        require_hierarchy_drawn(options.scene, backend, quality);
+        return loaded;
+    } catch (const Error&) {
+        const bool slabs = quality.sampling.cut != GridSampling::Cut::cells;
+        if (slabs || drawn_as == DrawnAs::grid) throw;
+    }
+    return load_scene(options.scene, DrawnAs::tets);
 }
 
 void render_pictures(const RenderOptions& options) {
@@ -203,7 +251,7 @@ void render_pictures(const RenderOptions& options) {
     const std::shared_ptr<const Font> font = require_annotated(options.annotations, options.output, size);
     if (!options.stats.empty()) require_writable(options.stats);
 
-    const LoadedScene loaded = load_scene(options.scene, drawn_as);
+    const LoadedScene loaded = load(options, drawn_as, {quality.method, quality.target, sampling}, grid_backend.backend);
     const Input& input = loaded.input;
     const Scene& scene = loaded.scene;
     const std::vector<Camera> cameras = cameras_of_pictures(options, input, size);
@@ -215,16 +263,25 @@ void render_pictures(const RenderOptions& options) {
     RunStatistics run;
     run.once_ms.read = input.read_ms;
     run.once_ms.tetrahedralize = input.tetrahedralize_ms;
-    const auto renderer = loaded.grid ? nullptr : make_renderer(mesh_backend.backend, {.threads = options.threads});
+    const bool as_it_is = loaded.grid || loaded.hierarchy;
+    const auto renderer = as_it_is ? nullptr : make_renderer(mesh_backend.backend, {.threads = options.threads});
     const auto grid_renderer = loaded.grid ? make_grid_renderer(grid_backend.backend, {.threads = options.threads}) : nullptr;
-    const GridQuality grid_quality{quality.method, quality.target, sampling};
+    const auto hierarchy_renderer = loaded.hierarchy ? make_hierarchy_renderer(options.threads) : nullptr;
+    GridQuality grid_quality{quality.method, quality.target, sampling};
     std::optional<double> error;  // of the first view
     if (options.max_error && renderer)
         quality = choose_measured(*renderer, mesh_backend.backend, scene, views, view, *options.max_error, quality, error.emplace());
+    if (options.max_error && grid_renderer) {
+        grid_quality = choose_measured(*grid_renderer, grid_backend.backend, *loaded.grid, views, view, *options.max_error, grid_quality,
+                                       options.sampling_chosen, error.emplace());
+    }
+    if (options.max_error && hierarchy_renderer)
+        quality.method = choose_measured(*hierarchy_renderer, *loaded.hierarchy, views, view, *options.max_error, error.emplace());
     const Stopwatch preparing;
     {
         const Progress progress("preparing");
         if (loaded.grid) grid_renderer->prepare(*loaded.grid, grid_quality);
+        else if (loaded.hierarchy) hierarchy_renderer->prepare(*loaded.hierarchy, quality.method);
         else renderer->prepare(scene, quality);
     }
     run.once_ms.prepare = preparing.ms();
@@ -233,9 +290,10 @@ void render_pictures(const RenderOptions& options) {
         const Progress progress("rendering " + file.string());
         Statistics statistics;
         Image image = loaded.grid ? grid_renderer->render(*loaded.grid, views[i], view, grid_quality, &statistics)
+                      : loaded.hierarchy ? hierarchy_renderer->render(*loaded.hierarchy, views[i], view, quality.method, &statistics)
                                   : renderer->render(scene, views[i], view, quality, &statistics);
         if (i == 0) statistics.error = error;
-        statistics.plan.insert(statistics.plan.begin(), (loaded.grid ? grid_backend : mesh_backend).decision);
+        statistics.plan.insert(statistics.plan.begin(), (as_it_is ? grid_backend : mesh_backend).decision);
         const Stopwatch writing;
         std::map<std::string, std::string> text{
             {"Software", "cellproj " CELLPROJ_VERSION},
@@ -289,7 +347,7 @@ void add_render_command(CLI::App& app) {
     command->add_option("--sampling", options->sampling,
                         "What cuts rays through a regular grid: cells, or slabs between slices by OpenGL: object:N or view:N, "
                         "behind that :pre or :post shaded, :xM slabs a polygon (render/README.md)")
-        ->capture_default_str();
+        ->capture_default_str()->each([options](const std::string&) { options->sampling_chosen = true; });
     CLI::Option* method = command->add_option("--method", options->method, "How a ray's piece in a cell becomes light: NAME[:CHOICE…] (classify/README.md)")
         ->capture_default_str();
     command->add_option("--max-error", options->max_error,

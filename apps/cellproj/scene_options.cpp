@@ -48,6 +48,12 @@ double volume_of(const Grid& grid) {
     return volume;
 }
 
+double volume_of(const GridHierarchy& hierarchy) {
+    double volume = 0;
+    for (const Grid& piece : hierarchy.pieces) volume += volume_of(piece);
+    return volume;
+}
+
 // The mean length of the rays through a mesh over all that meet its box: 4 · volume / surface of the box (Cauchy). Thin and sparse
 // meshes get more extinction by it than compact ones of the same diagonal.
 double mean_path(double volume, const Bounds& box) {
@@ -78,8 +84,8 @@ ColorRange choose_range(const SceneOptions& options, const ScalarField& field) {
     return options.range.empty() ? usual_range(field) : ColorRange{options.range[0], options.range[1]};
 }
 
-// `opacity`: the opacity field, or null.
-TransferFunction preset_transfer(const SceneOptions& options, const Input& input, const Grid* grid, const ScalarField& field,
+// `volume`: of all cells. `opacity`: the opacity field, or null.
+TransferFunction preset_transfer(const SceneOptions& options, const Input& input, double volume, const ScalarField& field,
                                  const ScalarField* opacity) {
     const auto [low, high] = choose_range(options, field);
     const bool log = options.axis == "log";
@@ -89,7 +95,7 @@ TransferFunction preset_transfer(const SceneOptions& options, const Input& input
                      "give --range LOW,HIGH with LOW > 0"});
     }
     // A cube's diagonal is 2.6 times its mean path.
-    const double size = 2.6 * mean_path(grid ? volume_of(*grid) : volume_of(*input.mesh), bounds(input.mesh->points));
+    const double size = 2.6 * mean_path(volume, bounds(input.mesh->points));
     const TransferFunction transfer =
         default_transfer_function(low, high, size, options.colors, log ? ScalarAxis::log : ScalarAxis::linear);
     if (!opacity) return transfer;
@@ -98,12 +104,12 @@ TransferFunction preset_transfer(const SceneOptions& options, const Input& input
     return {transfer.model(), transfer.color_nodes(), over_opacity.extinction_nodes()};
 }
 
-std::shared_ptr<const TransferFunction> choose_transfer(const SceneOptions& options, const Input& input, const Grid* grid,
+std::shared_ptr<const TransferFunction> choose_transfer(const SceneOptions& options, const Input& input, double volume,
                                                         const ScalarField& field, const ScalarField* opacity) {
     const bool from_scene = input.transfer && options.field.empty() && !opacity && !options.colors_chosen;
     const TransferFunction transfer = !options.transfer.empty() ? read_transfer_function(options.transfer)
                                       : from_scene              ? *input.transfer
-                                                                : preset_transfer(options, input, grid, field, opacity);
+                                                                : preset_transfer(options, input, volume, field, opacity);
     return std::make_shared<TransferFunction>(with_scaled_extinction(transfer, options.opacity_scale));
 }
 
@@ -175,10 +181,13 @@ LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as) {
         warn_of_values(*opacity);
     }
     std::shared_ptr<const Grid> regular;
-    if (input.regular) regular = std::make_shared<const Grid>(make_grid(*input.regular, *field));
+    std::shared_ptr<const GridHierarchy> pieces;
+    if (input.regular && !input.regular->pieces.empty()) pieces = std::make_shared<const GridHierarchy>(make_grid_hierarchy(*input.regular, *field));
+    else if (input.regular) regular = std::make_shared<const Grid>(make_grid(*input.regular, *field));
+    const double volume = pieces ? volume_of(*pieces) : regular ? volume_of(*regular) : volume_of(*input.mesh);
     Scene scene{.mesh = input.mesh,
                 .field = field,
-                .transfer = choose_transfer(options, input, regular.get(), *field, opacity.get()),
+                .transfer = choose_transfer(options, input, volume, *field, opacity.get()),
                 .opacity_field = opacity};
     if (options.iso.any_shaded()) add_surfaces(options, scene);
     add_cuts(options.cuts, parse_lighting(options.iso), scene.transfer, regular.get(), scene);
@@ -188,7 +197,9 @@ LoadedScene load_scene(const SceneOptions& options, DrawnAs drawn_as) {
     }
     std::optional<GridScene> grid;
     if (regular) grid = GridScene{std::move(regular), scene.transfer, scene.surfaces, scene.clip, scene.bodies, scene.slices};
-    return {std::move(input), std::move(scene), std::move(grid)};
+    std::optional<HierarchyScene> hierarchy;
+    if (pieces) hierarchy = HierarchyScene{std::move(pieces), scene.transfer};
+    return {std::move(input), std::move(scene), std::move(grid), std::move(hierarchy)};
 }
 
 std::vector<Camera> choose_cameras(const SceneOptions& options, const Input& input, ImageSize size, bool turn) {

@@ -13,6 +13,7 @@
 #include "iso_options.hpp"
 #include "project/camera.hpp"
 #include "render/grid_scene.hpp"
+#include "render/hierarchy_renderer.hpp"
 #include "render/renderer.hpp"
 #include "render/scene.hpp"
 #include "surface_input.hpp"
@@ -55,6 +56,7 @@ struct LoadedScene {
     Input input;
     Scene scene;                    // of a grid that is drawn as it is: a mesh without cells
     std::optional<GridScene> grid;  // set for such a one
+    std::optional<HierarchyScene> hierarchy = {};  // set for pieces refined inside each other, likewise
 };
 
 // Reads the mesh and chooses field and transfer function; warns of values that are not finite. Throws Error.

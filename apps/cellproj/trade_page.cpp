@@ -61,7 +61,7 @@ std::string table(std::span<const TradeRow> rows) {
         "<table><tr><th>method<th>backend<th>frame [ms]<th>set-up [ms]<th>tables [kB]<th>RMS<th>99 %<th>max<th>max, opacity<th>front</tr>\n";
     for (const TradeRow& row : rows) {
         const ErrorMeasure& color = row.error.color;
-        html += std::string("<tr") + (row.on_front ? " class=front" : "") + "><td>" + html_escaped(to_string(row.quality)) + "<td>" + html_escaped(row.backend) + "<td>" +
+        html += std::string("<tr") + (row.on_front ? " class=front" : "") + "><td>" + html_escaped(row.name) + "<td>" + html_escaped(row.backend) + "<td>" +
                 formatted("%.1f", row.frame_ms) + "<td>" + formatted("%.2f", row.set_up_ms) + "<td>" +
                 formatted("%.0f", static_cast<double>(row.table_bytes) / 1000) + "<td>" + formatted("%.2e", color.rms) + "<td>" +
                 formatted("%.2e", color.percentile_99) + "<td>" + formatted("%.2e", color.maximum) + "<td>" +
@@ -109,7 +109,7 @@ std::string to_html(const TradeReport& report) {
             (report.whole_picture ? "" : ". Pixels between judged ones are shown as the nearest of them") + ".</p>\n" + legend() +
             pair_of(picture(shown(report.truth), "truth"), "", "the truth, by rays in float64");
     for (const TradeRow& row : report.rows) {
-        const std::string name = to_string(row.quality);
+        const std::string name = row.name;
         html += pair_of(picture(row.image, name), picture(shown(error_map(row.image, report.truths)), "error of " + name),
                         name + ": RMS " + formatted("%.1e", row.error.color.rms) + ", max " + formatted("%.1e", row.error.color.maximum));
     }

@@ -150,13 +150,13 @@ std::string to_svg(std::span<const TradeRow> rows) {
         const Point p = points.emplace_back(Point{x.place(row.frame_ms), y.place(row.error.color.rms)});
         if (row.on_front) front += at(p.x) + "," + at(p.y) + " ";
         marks += "<circle fill=\"" + std::string(row.on_front ? "#1a7f37" : "#999") + "\" r=\"" + (row.on_front ? "5" : "4") +
-                 "\" cx=\"" + at(p.x) + "\" cy=\"" + at(p.y) + "\"><title>" + html_escaped(to_string(row.quality)) + ": " +
+                 "\" cx=\"" + at(p.x) + "\" cy=\"" + at(p.y) + "\"><title>" + html_escaped(row.name) + ": " +
                  formatted("%.1f", row.frame_ms) + " ms, RMS " + formatted("%.1e", row.error.color.rms) + "</title></circle>\n";
     }
     Labels labels(points);
     for (const bool on_front : {true, false}) {
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            if (rows[i].on_front == on_front) names += labels.add(points[i], to_string(rows[i].quality), on_front ? "#0f5223" : "#666");
+            if (rows[i].on_front == on_front) names += labels.add(points[i], rows[i].name, on_front ? "#0f5223" : "#666");
         }
     }
     return "<svg xmlns=\"http://www.w3.org/2000/svg\" font-family=\"system-ui, sans-serif\" viewBox=\"0 0 " + at(width) + " " +

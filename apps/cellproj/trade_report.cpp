@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trade_report.hpp"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -19,6 +20,10 @@ namespace {
     va_end(arguments);
     return text;
 }
+
+// As statistics say (render/statistics.hpp).
+const char* drawn_as(const TradeRow& row) { return row.sampling ? "grid" : "tetrahedra"; }
+std::string sampling(const TradeRow& row) { return row.sampling ? to_string(*row.sampling) : ""; }
 
 }  // namespace
 
@@ -50,11 +55,13 @@ std::string TradeReport::timed_in_words() const {
 }
 
 std::string to_table(const TradeReport& report) {
-    std::string text = line("%-26s %-9s %9s %10s %9s  %9s %9s %9s %9s\n", "method", "backend", "frame ms", "set-up ms", "tables kB", "RMS", "99 %",
+    int wide = 26;
+    for (const TradeRow& row : report.rows) wide = std::max(wide, static_cast<int>(row.name.size()));
+    std::string text = line("%-*s %-9s %9s %10s %9s  %9s %9s %9s %9s\n", wide, "method", "backend", "frame ms", "set-up ms", "tables kB", "RMS", "99 %",
                             "max", "max alpha");
     for (const TradeRow& row : report.rows) {
         const ErrorMeasure& color = row.error.color;
-        text += line("%-26s %-9s %9.1f %10.2f %9.0f  %9.2e %9.2e %9.2e %9.2e%s\n", to_string(row.quality).c_str(), row.backend.c_str(), row.frame_ms,
+        text += line("%-*s %-9s %9.1f %10.2f %9.0f  %9.2e %9.2e %9.2e %9.2e%s\n", wide, row.name.c_str(), row.backend.c_str(), row.frame_ms,
                      row.set_up_ms, static_cast<double>(row.table_bytes) / 1000, color.rms, color.percentile_99, color.maximum,
                      row.error.opacity.maximum, row.on_front ? " *" : "");
     }
@@ -63,12 +70,12 @@ std::string to_table(const TradeReport& report) {
 }
 
 std::string to_csv(const TradeReport& report) {
-    std::string text = "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front,iso_method\n";
+    std::string text = "method,target,backend,frame_ms,set_up_ms,table_bytes,rms,percentile_99,maximum,opacity_rms,opacity_maximum,on_front,iso_method,drawn_as,sampling\n";
     for (const TradeRow& row : report.rows) {
-        text += line("%s,%s,%s,%.3f,%.3f,%zu,%.6e,%.6e,%.6e,%.6e,%.6e,%d,%s\n", to_string(row.quality.method).c_str(),
+        text += line("%s,%s,%s,%.3f,%.3f,%zu,%.6e,%.6e,%.6e,%.6e,%.6e,%d,%s,%s,%s\n", to_string(row.quality.method).c_str(),
                      to_string(row.quality.target).c_str(), row.backend.c_str(), row.frame_ms, row.set_up_ms, row.table_bytes, row.error.color.rms, row.error.color.percentile_99,
                      row.error.color.maximum, row.error.opacity.rms, row.error.opacity.maximum, row.on_front ? 1 : 0,
-                     to_string(row.quality.surfaces).c_str());
+                     to_string(row.quality.surfaces).c_str(), drawn_as(row), sampling(row).c_str());
     }
     return text;
 }
@@ -83,6 +90,8 @@ std::string to_json(const TradeReport& report) {
         rows.push_back({{"method", to_string(row.quality.method)},
                         {"target", to_string(row.quality.target)},
                         {"iso_method", to_string(row.quality.surfaces)},
+                        {"drawn_as", drawn_as(row)},
+                        {"sampling", row.sampling ? Json(sampling(row)) : Json(nullptr)},
                         {"backend", row.backend},
                         {"ms", {{"set_up", row.set_up_ms}, {"frame", row.frame_ms}}},
                         {"table_bytes", row.table_bytes},

@@ -42,18 +42,15 @@ std::optional<T> take_optional(ByteReader& reader, const char* what) {
     return numbers.empty() ? std::nullopt : std::optional<T>(numbers.front());
 }
 
-void put_boxes(ByteWriter& writer, std::optional<BoxGrid>& boxes) {
-    writer.value(boxes.has_value());
-    if (!boxes) return;
-    for (const GridAxis& axis : boxes->axes) {
+void put_boxes(ByteWriter& writer, BoxGrid& boxes) {
+    for (const GridAxis& axis : boxes.axes) {
         writer.array(axis.coordinates);
         put_optional(writer, axis.spacing);
     }
-    put_and_free(writer, boxes->blanked);
+    put_and_free(writer, boxes.blanked);
 }
 
-std::optional<BoxGrid> take_boxes(ByteReader& reader) {
-    if (!reader.value<bool>("whether there is a grid of boxes")) return std::nullopt;
+BoxGrid take_boxes(ByteReader& reader) {
     BoxGrid boxes;
     for (GridAxis& axis : boxes.axes) {
         axis.coordinates = reader.array<double>("axis");
@@ -61,6 +58,28 @@ std::optional<BoxGrid> take_boxes(ByteReader& reader) {
     }
     boxes.blanked = reader.array<std::uint8_t>("blanked cells");
     return boxes;
+}
+
+void put_pieces(ByteWriter& writer, std::vector<PieceRows>& pieces) {
+    writer.value(std::uint64_t{pieces.size()});
+    for (PieceRows& piece : pieces) {
+        writer.text(piece.name);
+        put_boxes(writer, piece.boxes);
+        writer.value(piece.points);
+        writer.value(piece.cells);
+    }
+}
+
+std::vector<PieceRows> take_pieces(ByteReader& reader) {
+    std::vector<PieceRows> pieces;
+    for (auto left = reader.value<std::uint64_t>("number of pieces"); left > 0; --left) {
+        PieceRows& piece = pieces.emplace_back();
+        piece.name = reader.text("name of a piece");
+        piece.boxes = take_boxes(reader);
+        piece.points = reader.value<std::size_t>("points of a piece");
+        piece.cells = reader.value<std::size_t>("cells of a piece");
+    }
+    return pieces;
 }
 
 }  // namespace
@@ -73,7 +92,9 @@ void put(ByteWriter& writer, Dataset&& dataset) {
     put_and_free(writer, dataset.cells.kinds);
     put_and_free(writer, dataset.cells.offsets);
     put_and_free(writer, dataset.cells.vertices);
-    put_boxes(writer, dataset.boxes);
+    writer.value(dataset.boxes.has_value());
+    if (dataset.boxes) put_boxes(writer, *dataset.boxes);
+    put_pieces(writer, dataset.pieces);
     put_fields(writer, dataset.point_fields);
     put_fields(writer, dataset.cell_fields);
     writer.value(dataset.skipped_cells);
@@ -94,7 +115,8 @@ void take(ByteReader& reader, Dataset& dataset) {
     dataset.cells.kinds = reader.array<CellKind>("kinds");
     dataset.cells.offsets = reader.array<std::uint64_t>("offsets");
     dataset.cells.vertices = reader.array<VertexId>("vertices");
-    dataset.boxes = take_boxes(reader);
+    if (reader.value<bool>("whether there is a grid of boxes")) dataset.boxes = take_boxes(reader);
+    dataset.pieces = take_pieces(reader);
     dataset.point_fields = take_fields(reader);
     dataset.cell_fields = take_fields(reader);
     dataset.skipped_cells = reader.value<std::size_t>("skipped cells");

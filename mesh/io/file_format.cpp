@@ -85,6 +85,7 @@ std::optional<FileFormat> format_by_content(const fs::path& file) {
     }
     if (contains(head, "NDims") && contains(head, "ElementType")) return FileFormat::meta_image;
     if (contains(head, "FoamFile") && file.filename() == "controlDict") return FileFormat::openfoam;
+    if (text.starts_with('{') && contains(head, "\"pieces\"")) return FileFormat::hierarchy;
     if (is_su2(head)) return FileFormat::su2;
     return std::nullopt;
 }
@@ -152,6 +153,8 @@ const char* name(FileFormat format) {
             return "SU2";
         case FileFormat::tetgen:
             return "TetGen";
+        case FileFormat::hierarchy:
+            return "hierarchy of grids";
     }
     return "unknown";
 }

@@ -23,7 +23,8 @@ enum class FileFormat {
     gmsh,        // .msh
     medit,       // .mesh
     su2,         // .su2
-    tetgen       // .node .ele; by suffix only
+    tetgen,      // .node .ele; by suffix only
+    hierarchy    // JSON that names the pieces of a hierarchy of grids
 };
 
 // In words, for messages: "EnSight Gold case".

@@ -41,13 +41,8 @@ void drop_unused_points(Dataset& dataset) {
     keep_rows(dataset.point_fields, rows);
 }
 
-}  // namespace
-
-void leave_out_cells(Dataset& dataset, const std::vector<bool>& hidden) {
-    assert(dataset.grid && hidden.size() == dataset.grid->cells());
-    const auto count = static_cast<std::size_t>(std::count(hidden.begin(), hidden.end(), true));
-    if (count == 0) return;
-    const CellList all = hexahedra_of(*dataset.grid);
+// The hexahedra of `all` that are not hidden, with their fields and the points that they have.
+void keep_visible(Dataset& dataset, const CellList& all, const std::vector<bool>& hidden) {
     CellList kept;
     std::vector<std::size_t> rows;
     kept.offsets.push_back(0);
@@ -59,12 +54,31 @@ void leave_out_cells(Dataset& dataset, const std::vector<bool>& hidden) {
                              all.vertices.begin() + static_cast<std::ptrdiff_t>(8 * c + 8));
         kept.offsets.push_back(kept.vertices.size());
     }
+    dataset.ghost_cells += all.size() - rows.size();
     keep_rows(dataset.cell_fields, rows);
     dataset.cells = std::move(kept);
     dataset.grid.reset();
-    if (dataset.boxes) dataset.boxes->blanked.assign(hidden.begin(), hidden.end());
-    dataset.ghost_cells += count;
     drop_unused_points(dataset);
+}
+
+}  // namespace
+
+void leave_out_cells(Dataset& dataset, const std::vector<bool>& hidden) {
+    if (!dataset.grid) {  // some are left out already
+        assert(dataset.boxes && hidden.size() == dataset.boxes->blanked.size());
+        std::vector<bool> of_kept;
+        for (std::size_t c = 0; c < hidden.size(); ++c) {
+            std::uint8_t& blanked = dataset.boxes->blanked[c];
+            if (!blanked) of_kept.push_back(hidden[c]);
+            blanked |= hidden[c] ? 1U : 0U;
+        }
+        keep_visible(dataset, CellList(dataset.cells), of_kept);
+        return;
+    }
+    assert(hidden.size() == dataset.grid->cells());
+    if (std::find(hidden.begin(), hidden.end(), true) == hidden.end()) return;
+    keep_visible(dataset, hexahedra_of(*dataset.grid), hidden);
+    if (dataset.boxes) dataset.boxes->blanked.assign(hidden.begin(), hidden.end());
 }
 
 std::vector<bool> cells_touching(const GridDimensions& grid, const std::vector<bool>& hidden) {

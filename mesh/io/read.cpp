@@ -34,7 +34,7 @@ std::string advice_for(const fs::path& file) {
                  .expected =
                      "VTK XML (<VTKFile ...>) or legacy VTK (# vtk DataFile ...), an OpenFOAM case (.foam or its "
                      "folder), EnSight Gold (.case), Exodus II, CGNS, Fluent (.cas, .msh), MetaImage, NRRD, SLC, Gmsh, "
-                     "Medit, SU2, TetGen (.node, .ele) or a PLOT3D grid (.xyz, .x, .p3d, .g, .bin)",
+                     "Medit, SU2, TetGen (.node, .ele), JSON that names the pieces of a hierarchy of grids, or a PLOT3D grid (.xyz, .x, .p3d, .g, .bin)",
                  .found = head.empty() ? "a folder that is no OpenFOAM case"
                                        : "a file that starts with \"" + printable(head) + "\"",
                  .advice = advice_for(file)});
@@ -71,6 +71,8 @@ Dataset read_format(FileFormat format, const fs::path& file, const ReadOptions& 
             return read_su2(file);
         case FileFormat::tetgen:
             return read_tetgen(file, options.subdivide);
+        case FileFormat::hierarchy:
+            return read_hierarchy(file, options);
         default:
             return read_with_vtk(format, file, options);
     }

@@ -37,6 +37,7 @@ Dataset read_family(FileFormat format, const std::filesystem::path& file, const 
         case FileFormat::medit:
         case FileFormat::su2:
         case FileFormat::tetgen:
+        case FileFormat::hierarchy:
             break;  // text_formats.hpp
     }
     throw Error({.kind = ErrorKind::format,

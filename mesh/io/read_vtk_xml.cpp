@@ -46,7 +46,7 @@ struct XmlType {
     const char* words;
 };
 
-constexpr std::array<XmlType, 11> supported{{{"UnstructuredGrid", "VTK XML unstructured grid"},
+constexpr std::array<XmlType, 14> supported{{{"UnstructuredGrid", "VTK XML unstructured grid"},
                                              {"StructuredGrid", "VTK XML structured grid"},
                                              {"RectilinearGrid", "VTK XML rectilinear grid"},
                                              {"ImageData", "VTK XML image"},
@@ -54,6 +54,9 @@ constexpr std::array<XmlType, 11> supported{{{"UnstructuredGrid", "VTK XML unstr
                                              {"PStructuredGrid", "VTK XML partitioned structured grid"},
                                              {"PRectilinearGrid", "VTK XML partitioned rectilinear grid"},
                                              {"PImageData", "VTK XML partitioned image"},
+                                             {"vtkOverlappingAMR", "VTK XML overlapping AMR"},
+                                             {"vtkNonOverlappingAMR", "VTK XML non-overlapping AMR"},
+                                             {"vtkHierarchicalBoxDataSet", "VTK XML hierarchical boxes"},
                                              {"vtkMultiBlockDataSet", "VTK XML multi-block dataset"},
                                              {"vtkPartitionedDataSet", "VTK XML partitioned dataset"},
                                              {"vtkPartitionedDataSetCollection", "VTK XML collection of parts"}}};
@@ -65,7 +68,7 @@ std::string require_supported(const std::string& found, const fs::path& file) {
     throw Error({.kind = ErrorKind::format,
                  .place = file.string(),
                  .expected = "the dataset type UnstructuredGrid, StructuredGrid, RectilinearGrid or ImageData, a "
-                             "partitioned, multi-block or Collection file",
+                             "partitioned, multi-block, AMR or Collection file",
                  .found = found.empty() ? "a VTK file that names no dataset type" : "the type " + printable(found),
                  .advice = "convert the file to one of these; fill a closed surface with tetrahedra first: cellproj "
                            "tetrahedralize"});
@@ -196,6 +199,10 @@ Dataset read_vtk_xml(const fs::path& file, const ReadOptions& options) {
         return read_collection(file, options);
     }
     const std::string format = require_supported(type, file);
+    if (type.ends_with("AMR") || type == "vtkHierarchicalBoxDataSet") {
+        require_xml_end(file);
+        return read_vtk_amr(file, format);
+    }
     return blocks_to_dataset(*load(file), file, format, options);
 }
 

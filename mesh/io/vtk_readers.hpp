@@ -57,6 +57,11 @@ Dataset structured_to_dataset(vtkDataSet& grid, const std::filesystem::path& fil
 Dataset blocks_to_dataset(vtkDataObject& data, const std::filesystem::path& file, const std::string& format,
                           const ReadOptions& options);
 
+// ---- vtk_amr.cpp ----
+
+// VTK's AMR (.vth, .vthb), checked to be XML: all pieces of all levels. Throws as `assemble_pieces`.
+Dataset read_vtk_amr(const std::filesystem::path& file, const std::string& format);
+
 // ---- vtk_time.cpp ----
 
 // The index of the time step nearest to `wanted`, the last one without a wish. `times` is not empty.

@@ -55,8 +55,8 @@ private:
 
 }  // namespace
 
-GridVolume::GridVolume(const Grid& grid)
-    : units_(units_of(grid)), mean_chord_(cellproj::mean_chord(grid, units_)), constant_(grid.location == FieldLocation::cells) {
+GridVolume::GridVolume(const Grid& grid, const GridUnits& units)
+    : units_(units), mean_chord_(cellproj::mean_chord(grid, units_)), constant_(grid.location == FieldLocation::cells) {
     const GridDimensions n = grid.dimensions();
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (n.ni * n.nj * n.nk > most) {

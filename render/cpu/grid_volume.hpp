@@ -20,7 +20,9 @@ namespace cellproj::cpu {
 class GridVolume {
 public:
     // Throws Error (data) for more values than 32 bits count.
-    explicit GridVolume(const Grid& grid);
+    explicit GridVolume(const Grid& grid) : GridVolume(grid, units_of(grid)) {}
+    // The same in the units of what the grid is a part of.
+    GridVolume(const Grid& grid, const GridUnits& units);
 
     const GridUnits& units() const { return units_; }
     double mean_chord() const { return mean_chord_; }

@@ -29,18 +29,6 @@ constexpr std::size_t cells_per_chunk = 16384;
 
 constexpr unsigned int values_unit = 8;  // behind those of the methods (segment_shader.hpp)
 
-// What of a grid slices can show: a texture interpolates values on points, evenly spaced, all of them there.
-void require_sliced(const Grid& grid, const GridSampling& sampling) {
-    const auto refuse = [&](const char* expected, const char* found) {
-        throw Error({ErrorKind::option, "--sampling", std::string(expected) + " for " + to_string(sampling), found, "use cells"});
-    };
-    if (grid.location != FieldLocation::points) refuse("values on points", "values on cells");
-    if (!grid.blanked.empty()) refuse("a grid without blanked cells", "some");
-    for (const GridAxis& axis : grid.axes) {
-        if (!axis.spacing) refuse("uniform axes", "a rectilinear grid");
-    }
-}
-
 }  // namespace
 
 void require_grid_drawn(const GridQuality& quality, bool surfaces) {
@@ -60,6 +48,17 @@ void require_grid_drawn(const GridQuality& quality, bool surfaces) {
                "use homogeneous:vertices, or draw the grid as tetrahedra (--as tets)");
     if (quality.sampling.cut != GridSampling::Cut::cells && light_at_vertices(quality.method))
         refuse("--method", "a method of light per pixel for slabs", to_string(quality.method), "use cells (--sampling cells)");
+}
+
+void require_sliced(const Grid& grid, const GridSampling& sampling) {
+    const auto refuse = [&](const char* expected, const char* found) {
+        throw Error({ErrorKind::option, "--sampling", std::string(expected) + " for " + to_string(sampling), found, "use cells"});
+    };
+    if (grid.location != FieldLocation::points) refuse("values on points", "values on cells");
+    if (!grid.blanked.empty()) refuse("a grid without blanked cells", "some");
+    for (const GridAxis& axis : grid.axes) {
+        if (!axis.spacing) refuse("uniform axes", "a rectilinear grid");
+    }
 }
 
 GlGridRenderer::GlGridRenderer(std::unique_ptr<Context> context)

@@ -22,6 +22,8 @@ namespace cellproj::gl {
 
 // Throws Error (option) for what this backend does not draw of grids.
 void require_grid_drawn(const GridQuality& quality, bool surfaces);
+// Likewise for a grid that cannot be sliced so: a texture interpolates values on points, evenly spaced, all of them there.
+void require_sliced(const Grid& grid, const GridSampling& sampling);
 
 class GlGridRenderer : public GridRenderer {
 public:
