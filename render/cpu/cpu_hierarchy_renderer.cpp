@@ -188,7 +188,7 @@ std::size_t CpuHierarchyRenderer::draw(Image& image, const ScreenTransform& tran
             for (const std::size_t p : order) {
                 if (!windows[p].overlaps(tile)) continue;
                 const GridVolume& volume = parts_[p].volume;
-                volume.find_rays(transform, tile.x, tile.y, tile.width, tile.height, rays);
+                volume.find_rays(transform, tile.x, tile.y, tile.width, tile.height, {}, rays);
                 bool met = false;
                 for (int row = 0; row < tile.height; ++row)
                     for (int column = 0; column < tile.width; ++column) {
