@@ -133,8 +133,8 @@ std::vector<PlaneFace> lone_faces(const std::vector<Part>& parts) {
     }
     std::ranges::stable_sort(above, order);
     std::ranges::stable_sort(below, order);
-    const auto [first, last] = std::ranges::unique(below, std::ranges::equal_to{}, &PlaneFace::vertices);
-    below.erase(first, last);
+    const auto same = [](const PlaneFace& a, const PlaneFace& b) { return a.vertices == b.vertices; };
+    below.erase(std::unique(below.begin(), below.end(), same), below.end());
     std::erase_if(below, [&](const PlaneFace& face) { return std::ranges::binary_search(above, face, order); });
     return below;
 }

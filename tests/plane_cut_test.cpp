@@ -110,8 +110,7 @@ TEST(PlaneCut, AFaceInThePlaneBelongsToTheCellAboveIt) {
         std::vector<double> found;
         for (const CutTriangle& t : cut_by_plane(mesh, field, nullptr, {x, 0, 0}, {direction, 0, 0}, sides)) found.insert(found.end(), t.scalars.begin(), t.scalars.end());
         std::ranges::sort(found);
-        const auto repeated = std::ranges::unique(found);
-        found.erase(repeated.begin(), repeated.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
         return found;
     };
     using Values = std::vector<double>;
