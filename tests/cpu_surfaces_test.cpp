@@ -196,7 +196,7 @@ TEST_P(CpuSurfacesOfEither, InSlivers) {
 #ifdef CELLPROJ_MESHER_PROGRAM
     const Scene bare = scene_of(testing_support::delaunay_mesh(300), waves, nothing());
     for (const Shading shading : {Shading::flat, Shading::smooth})
-        EXPECT_LT(error_of(with_surfaces(bare, three, shading, two_lights), view_of_unit_cube(GetParam()), {40, 40}), 2e-6);
+        EXPECT_LT(error_of(with_surfaces(bare, three, shading, two_lights), view_of_unit_cube(GetParam()), sanitized ? ImageSize{16, 16} : ImageSize{40, 40}), 2e-6);
 #else
     GTEST_SKIP() << "no mesher";
 #endif
