@@ -393,16 +393,16 @@ public:
         vertex_.maps[0].scalar = static_cast<float>(scalar.value);
         for (std::size_t slope = 0; slope < 3; ++slope) vertex_.maps[slope + 1].scalar = static_cast<float>(scalar.slopes[slope]);
         if (first == last && !stream.prepared_.lights_medium()) return;
-        // Of a piece of a cell, the cell's corners may lie where nothing is on the screen.
-        const auto places = corners.whole ? places_of(corners, 0.0, frame) : places_of(cell, frame);
-        const std::array<glm::dvec3, 4> corner_gradients = gradients(surfaces, cell);
-        const AffineMap<glm::dvec3> gradient = make_gradient_map(places, corner_gradients);
-        // Surfaces ask for directions alone, a medium that is lit for lengths, too.
-        double size = 1.0;
-        if (stream.prepared_.lights_medium()) {
-            size = 0.0;
-            for (const glm::dvec3& g : corner_gradients) size = std::max({size, std::abs(g.x), std::abs(g.y), std::abs(g.z)});
+        std::array<glm::dvec3, 4> corner_gradients = gradients(surfaces, cell);
+        if (!corners.whole) {
+            // Of a piece, the cell's corners may lie where nothing is on the screen: those of the piece have their share of its gradients.
+            const AffineMap<glm::dvec3> in_cell = make_gradient_map(places_of(cell, frame), corner_gradients);
+            const double factor = largest_part(corner_gradients);
+            for (std::size_t c = 0; c < 4; ++c) corner_gradients[c] = factor * in_cell.at(places_before[c]);
         }
+        const AffineMap<glm::dvec3> gradient = make_gradient_map(places_of(corners, 0.0, frame), corner_gradients);
+        // Surfaces ask for directions alone, a medium that is lit for lengths, too.
+        const double size = stream.prepared_.lights_medium() ? largest_part(corner_gradients) : 1.0;
         for (int axis = 0; axis < 3; ++axis) {
             vertex_.maps[0].gradient[axis] = static_cast<float>(size * gradient.value[axis]);
             for (std::size_t slope = 0; slope < 3; ++slope)
@@ -452,6 +452,12 @@ private:
         std::array<glm::dvec3, 4> places;
         for (std::size_t i = 0; i < 4; ++i) places[i] = corners.vertices[i].position - glm::dvec3(0.0, 0.0, frame.far_depth());
         return places;
+    }
+
+    static double largest_part(const std::array<glm::dvec3, 4>& vectors) {
+        double largest = 0.0;
+        for (const glm::dvec3& v : vectors) largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+        return largest;
     }
 
     // At the cell's corners: its own four times (flat), those of its points (smooth), 0 (unlit).

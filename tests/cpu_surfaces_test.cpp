@@ -190,6 +190,18 @@ TEST_P(CpuSurfacesOfEither, AThousandOfThem) {
     EXPECT_LT(error_of(scene, view_of_unit_cube(GetParam()), {24, 24}), 1e-5);
 }
 
+// A coarse Delaunay mesh, whose sides have cells a thousandth as thick as they are long: the CPU moves no points, so that gradients in them,
+// and colours, are float32's.
+TEST_P(CpuSurfacesOfEither, InSlivers) {
+#ifdef CELLPROJ_MESHER_PROGRAM
+    const Scene bare = scene_of(testing_support::delaunay_mesh(300), waves, nothing());
+    for (const Shading shading : {Shading::flat, Shading::smooth})
+        EXPECT_LT(error_of(with_surfaces(bare, three, shading, two_lights), view_of_unit_cube(GetParam()), sanitized ? ImageSize{16, 16} : ImageSize{40, 40}), 2e-6);
+#else
+    GTEST_SKIP() << "no mesher";
+#endif
+}
+
 TEST(CpuSurfaces, OfAQuadraticFieldAndACameraInside) {
     const glm::dvec3 c(0.5);
     const auto bowl = [&](const glm::dvec3& p) { return glm::dot(p - c, p - c); };

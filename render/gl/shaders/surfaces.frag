@@ -76,6 +76,9 @@ vec2 on_face(vec4 nearness_plane, vec4 scalar_plane, vec2 range) {
     return vec2(nearness, clamp(scalar, range.x, range.y));
 }
 
+// The share of the way between two scalars where a value is met.
+float way_to(float value, float from, float to) { return from != to ? clamp((value - from) / (to - from), 0.0, 1.0) : 1.0; }
+
 vec2 ends(float a, float b, float c) { return vec2(min(min(a, b), c), max(max(a, b), c)); }
 
 #ifdef LIT
@@ -167,7 +170,9 @@ void main() {
     }
     if (window.y > back.x) kept.y = window.y < front.x ? cuts.y : 0.0;
 #endif
-    // The field at both ends, in the cell's own range beyond which slivers extrapolate. `front` and `back` tell the sides of surfaces.
+    // The field at both ends, in the cell's own range beyond which slivers extrapolate. `front` and `back` tell the sides of surfaces and, as
+    // gradients are linear between the points where the rasterizer has them, also where on its way the gradient becomes a surface's: in
+    // a sliver, the two scalars of one place are far apart.
     vec3 place_in_front = place_at(offset, front_depth), place_behind = place_at(offset, front_depth + depth_difference);
     vec4 at_front = v_map + v_slopes * place_in_front, at_back = v_map + v_slopes * place_behind;
     vec2 range = vec2(min(v_scalars.x, ends(v_scalars.y, v_scalars.z, v_scalars.w).x), max(v_scalars.x, ends(v_scalars.y, v_scalars.z, v_scalars.w).y));
@@ -197,8 +202,8 @@ void main() {
     precise vec2 place = vec2(front.y, back.y) * table_scale + table_shift;  // both cells of a face: the same
     ivec2 texel = ivec2(floor(clamp(place, 0.0, table_scale)));
     vec4 layers = texelFetch(layer_table, texel, 0);
-    float value = clamp(texelFetch(first_table, texel, 0).x, min(s.x, s.y), max(s.x, s.y));
-    float share = s.x != s.y ? clamp((value - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
+    float first_value = texelFetch(first_table, texel, 0).x, value = clamp(first_value, min(s.x, s.y), max(s.x, s.y));
+    float share = way_to(value, s.x, s.y);
     vec2 s_kept = vec2(mix(s.x, s.y, kept.x), mix(s.x, s.y, kept.y));
     bool crossed = layers.a > 0.0;
 #ifdef WINDOW
@@ -216,7 +221,7 @@ void main() {
     behind.rgb *= reflected(at_back.xyz, to_eye);
 #elif defined(LIT)
 #ifdef SMOOTH
-    vec3 share_of_color = reflected(mix(at_front.xyz, at_back.xyz, share), to_eye);
+    vec3 share_of_color = reflected(mix(at_front.xyz, at_back.xyz, way_to(first_value, front.y, back.y)), to_eye);
 #else
     vec3 share_of_color = reflected(v_map.xyz, to_eye);
 #endif
@@ -286,7 +291,7 @@ void main() {
 #endif
         int surface = 3 * max(rising ? k : k - 1, 0);
         vec4 about = texelFetch(surfaces, surface);
-        float share = crossed && s.x != s.y ? clamp((about.y - s.x) / (s.y - s.x), 0.0, 1.0) : 1.0;
+        float share = crossed ? way_to(about.y, s.x, s.y) : 1.0;
 #ifdef WINDOW
         if (crossed && share < kept.x) {
             k += rising ? 1 : -1;
@@ -314,7 +319,7 @@ void main() {
 #endif
         vec4 layer = texelFetch(surfaces, surface + (rising ? 1 : 2));
 #ifdef SMOOTH
-        vec3 share_of_color = reflected(mix(at_front.xyz, at_back.xyz, share), to_eye);
+        vec3 share_of_color = reflected(mix(at_front.xyz, at_back.xyz, way_to(about.y, front.y, back.y)), to_eye);
 #endif
 #ifdef LIT
         layer.rgb *= share_of_color;
