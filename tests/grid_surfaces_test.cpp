@@ -118,6 +118,7 @@ GridAxis uneven_axis(std::mt19937_64& random, std::size_t points) {
 // show nothing are leapt over up to the very plane of the surface.
 TEST(CpuGridSurfaces, PlanesInThePlanesOfTheGrid) {
     for (const std::size_t cells : {1U, 4U, 32U, 64U}) {
+        if (sanitized && cells == 64) continue;
         for (const double v : {0.25, 0.5, 0.75}) {
             for (int axis = 0; axis < 3; ++axis) {
                 const GridScene scene = scene_of(unit_cube(cells, [&](const glm::dvec3& p) { return p[axis]; }), no_medium,
