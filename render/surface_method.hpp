@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The ways to isosurfaces in a segment, by name. What each costs and how wrong it is: render/README.md.
+// The ways to isosurfaces in a segment, by name. What each costs and how wrong it is: render/gl/README.md.
 #pragma once
 
 #include <string>
