@@ -33,17 +33,6 @@ GridReference judge(Grid grid, TransferFunction transfer) {
     return {std::make_shared<Grid>(std::move(grid)), std::make_shared<TransferFunction>(std::move(transfer))};
 }
 
-double chord(const Bounds& box, const Ray& ray, bool from_origin) {
-    double enter = from_origin ? 0 : -std::numeric_limits<double>::infinity(), leave = -enter + 1e300;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double a = (box.low[axis] - ray.origin[axis]) / ray.direction[axis];
-        const double b = (box.high[axis] - ray.origin[axis]) / ray.direction[axis];
-        enter = std::max(enter, std::min(a, b));
-        leave = std::min(leave, std::max(a, b));
-    }
-    return std::max(0.0, leave - enter);
-}
-
 // 1 − exp(−τ·chord), whatever the axes, values, scale and view.
 TEST(GridReference, AConstantMediumOfAnyResolutionSpacingAndView) {
     std::mt19937_64 random(301);
@@ -71,7 +60,7 @@ TEST(GridReference, AConstantMediumOfAnyResolutionSpacingAndView) {
         const glm::dvec3 origin = somewhere(trial % 3 == 0 ? 0.5 : 3);  // inside the grid, too
         const Ray ray{origin, glm::normalize(somewhere(0.5) - origin)};
         const bool from_origin = trial % 5 < 3;
-        const double length = chord(box, ray, from_origin);
+        const double length = testing_support::chord_in_box(box, ray, from_origin);
         const Light light = judge(grid, constant_medium(tau)).light(ray, from_origin);
         const double opacity = -std::expm1(-tau * length);
         // The coordinates are a thousand sizes from 0 at most, 1e-16 of which is what a chord rounds to; at grazing

@@ -15,6 +15,7 @@
 #include "render/hierarchy_reference.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/grid_hierarchies.hpp"
+#include "tests/support/grids.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
@@ -46,16 +47,6 @@ std::vector<PixelTruth> truth_of(const HierarchyScene& scene, const Camera& came
     return HierarchyReference(scene).pixels(camera, small, all_pixels(small));
 }
 
-double chord(const Bounds& box, const ScreenTransform::Ray& ray, bool from_origin) {
-    double enter = from_origin ? 0 : -1e300, leave = 1e300;
-    for (int a = 0; a < 3; ++a) {
-        const double low = (box.low[a] - ray.origin[a]) / ray.direction[a], high = (box.high[a] - ray.origin[a]) / ray.direction[a];
-        enter = std::max(enter, std::min(low, high));
-        leave = std::min(leave, std::max(low, high));
-    }
-    return std::max(0.0, leave - enter);
-}
-
 // 1 − exp(−τ·chord) whatever the pieces, at every scale, far from the origin, from outside and from inside.
 TEST(HierarchyPicture, AConstantMediumKnowsNoPieces) {
     std::mt19937_64 random(81);
@@ -81,7 +72,7 @@ TEST(HierarchyPicture, AConstantMediumKnowsNoPieces) {
         const Image image = cpu().render(scene, camera, small);
         double error = 0, judged = 0, brightest = 0;
         for (const PixelTruth& truth : truth_of(scene, camera)) {
-            const double length = chord(box, transform.ray({truth.pixel.x + 0.5, truth.pixel.y + 0.5}), transform.perspective());
+            const double length = testing_support::chord_in_box(box, transform.ray({truth.pixel.x + 0.5, truth.pixel.y + 0.5}), transform.perspective());
             const double opacity = -std::expm1(-tau * length);
             judged = std::max(judged, std::abs(truth.light.opacity - opacity));
             error = std::max(error, std::abs(image.at(truth.pixel.x, truth.pixel.y).a - opacity));
@@ -132,7 +123,7 @@ TEST(HierarchyPicture, ARefinedCornerIsWithinTheInterpolationErrorAndHasNoSeam) 
                 const ScreenTransform transform(camera, small);
                 const Image image = cpu().render(scene, camera, small, parse_method("exact:1e-6"));
                 for (const PixelTruth& truth : everywhere.pixels(camera, small, all_pixels(small))) {
-                    const double length = chord(fine->bounds(), transform.ray({truth.pixel.x + 0.5, truth.pixel.y + 0.5}), transform.perspective());
+                    const double length = testing_support::chord_in_box(fine->bounds(), transform.ray({truth.pixel.x + 0.5, truth.pixel.y + 0.5}), transform.perspective());
                     const double error = testing_support::max_difference(glm::dvec4(image.at(truth.pixel.x, truth.pixel.y)),
                                                                          glm::dvec4(truth.light.color, truth.light.opacity));
                     ASSERT_LE(error, slope * delta * length + 1e-5) << n << " at " << truth.pixel.x << ' ' << truth.pixel.y;

@@ -3,12 +3,15 @@
 // Regular grids whose field is a function.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <utility>
 
 #include "mesh/grid.hpp"
+#include "project/camera.hpp"
 
 namespace cellproj::testing_support {
 
@@ -21,6 +24,18 @@ inline Grid grid_of(std::array<GridAxis, 3> axes, const std::function<double(con
         }
     }
     return grid;
+}
+
+// The length of a ray in a box, in units of its direction; of what is behind the origin, too, unless it starts there.
+inline double chord_in_box(const Bounds& box, const ScreenTransform::Ray& ray, bool from_origin) {
+    double enter = from_origin ? 0 : -std::numeric_limits<double>::infinity(), leave = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double a = (box.low[axis] - ray.origin[axis]) / ray.direction[axis];
+        const double b = (box.high[axis] - ray.origin[axis]) / ray.direction[axis];
+        enter = std::max(enter, std::min(a, b));
+        leave = std::min(leave, std::max(a, b));
+    }
+    return std::max(0.0, leave - enter);
 }
 
 // n cells along each axis.
