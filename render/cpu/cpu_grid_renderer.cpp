@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render/cpu/cpu_grid_renderer.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -20,6 +17,7 @@
 #include "render/cpu/grid_bend.hpp"
 #include "render/cpu/grid_kernels.hpp"
 #include "render/cpu/grid_volume.hpp"
+#include "render/cpu/picture_tiles.hpp"
 #include "render/depth_window.hpp"
 #include "render/grid_plan.hpp"
 #include "render/grid_surfaces.hpp"
@@ -133,25 +131,16 @@ Image CpuGridRenderer::render_here(const GridScene& scene, const Camera& camera,
     return image;
 }
 
-// Each tile by one task: the same picture for any number of threads. Returns the number of segments.
+// Returns the number of segments.
 std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform, std::span<const DepthInterval> kept) const {
     const GridCells cells = volume_->cells();
     Shading shading = classification_->shading();
     if (!classification_->may_be_opaque() && surfaces_.count == 0) shading.opaque = 1.0F;
-    const int columns = (image.width + tile_side - 1) / tile_side, rows = (image.height + tile_side - 1) / tile_side;
-    std::atomic<std::size_t> segments = 0;
-    oneapi::tbb::parallel_for(
-        0, columns * rows,
-        [&](int index) {
-            const int x = index % columns * tile_side, y = index / columns * tile_side;
-            const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), &image.at(x, y),
-                            static_cast<std::size_t>(image.width)};
-            GridRays rays;
-            volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, kept, rays);
-            segments += draw_grid_tile(cells, surfaces_.count > 0 ? &surfaces_ : nullptr, rays, shading, bend_, tile);
-        },
-        oneapi::tbb::simple_partitioner());
-    return segments;
+    return draw_tiles(image, [&](const Tile& tile) {
+        GridRays rays;
+        volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, kept, rays);
+        return draw_grid_tile(cells, surfaces_.count > 0 ? &surfaces_ : nullptr, rays, shading, bend_, tile);
+    });
 }
 
 }  // namespace

@@ -2,13 +2,10 @@
 //
 // Hierarchies of grids: boxes of one piece each, from front to back (mesh/hierarchy_boxes.hpp), drawn tile by tile as grids are
 // (grid_kernels.hpp) and composited.
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <limits>
 #include <optional>
 #include <string>
@@ -21,6 +18,7 @@
 #include "render/cpu/grid_bend.hpp"
 #include "render/cpu/grid_kernels.hpp"
 #include "render/cpu/grid_volume.hpp"
+#include "render/cpu/picture_tiles.hpp"
 #include "render/hierarchy_renderer.hpp"
 
 namespace cellproj {
@@ -169,44 +167,41 @@ Image CpuHierarchyRenderer::render_here(const HierarchyScene& scene, const Camer
     return image;
 }
 
-// Each tile by one task: the same picture for any number of threads. Returns the number of segments.
+// Returns the number of segments.
 std::size_t CpuHierarchyRenderer::draw(Image& image, const ScreenTransform& transform, const std::vector<std::size_t>& order) const {
     Shading shading = classification_->shading();
     const float opaque = classification_->may_be_opaque() ? shading.opaque : 1.0F;
     shading.opaque = opaque;
     std::vector<Window> windows;
     for (const Part& part : parts_) windows.push_back(window_of(part.box, transform));
-    const int columns = (image.width + tile_side - 1) / tile_side, rows = (image.height + tile_side - 1) / tile_side;
-    std::atomic<std::size_t> segments = 0;
-    oneapi::tbb::parallel_for(
-        0, columns * rows,
-        [&](int index) {
-            const int x = index % columns * tile_side, y = index / columns * tile_side;
-            std::array<glm::vec4, GridRays::count> light;  // of one box
-            const Tile tile{x, y, std::min(tile_side, image.width - x), std::min(tile_side, image.height - y), light.data(), tile_side};
-            GridRays rays;
-            for (const std::size_t p : order) {
-                if (!windows[p].overlaps(tile)) continue;
-                const GridVolume& volume = parts_[p].volume;
-                volume.find_rays(transform, tile.x, tile.y, tile.width, tile.height, {}, rays);
-                bool met = false;
-                for (int row = 0; row < tile.height; ++row)
-                    for (int column = 0; column < tile.width; ++column) {
-                        float& length = rays.length[static_cast<std::size_t>(tile_side * row + column)];
-                        if (image.at(x + column, y + row).a > opaque) length = 0;
-                        met = met || length > 0;
-                    }
-                if (!met) continue;
-                segments += draw_grid_tile(volume.cells(), nullptr, rays, shading, bend_, tile);
-                for (int row = 0; row < tile.height; ++row)
-                    for (int column = 0; column < tile.width; ++column) {
-                        glm::vec4& seen = image.at(x + column, y + row);
-                        seen += (1.0F - seen.a) * light[static_cast<std::size_t>(tile_side * row + column)];
-                    }
-            }
-        },
-        oneapi::tbb::simple_partitioner());
-    return segments;
+    return draw_tiles(image, [&](const Tile& tile) {
+        std::array<glm::vec4, GridRays::count> light;  // of one box
+        Tile box = tile;
+        box.pixels = light.data();
+        box.stride = tile_side;
+        GridRays rays;
+        std::size_t segments = 0;
+        for (const std::size_t p : order) {
+            if (!windows[p].overlaps(tile)) continue;
+            const GridVolume& volume = parts_[p].volume;
+            volume.find_rays(transform, tile.x, tile.y, tile.width, tile.height, {}, rays);
+            bool met = false;
+            for (int row = 0; row < tile.height; ++row)
+                for (int column = 0; column < tile.width; ++column) {
+                    float& length = rays.length[static_cast<std::size_t>(tile_side * row + column)];
+                    if (image.at(tile.x + column, tile.y + row).a > opaque) length = 0;
+                    met = met || length > 0;
+                }
+            if (!met) continue;
+            segments += draw_grid_tile(volume.cells(), nullptr, rays, shading, bend_, box);
+            for (int row = 0; row < tile.height; ++row)
+                for (int column = 0; column < tile.width; ++column) {
+                    glm::vec4& seen = image.at(tile.x + column, tile.y + row);
+                    seen += (1.0F - seen.a) * light[static_cast<std::size_t>(tile_side * row + column)];
+                }
+        }
+        return segments;
+    });
 }
 
 }  // namespace
