@@ -6,7 +6,7 @@
 
 #include "mesh/error.hpp"
 #include "render/gl/grid_gl_renderer.hpp"
-#include "render/hierarchy_reference.hpp"
+#include "render/judge/hierarchy_reference.hpp"
 
 namespace cellproj {
 

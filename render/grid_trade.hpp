@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "render/grid_reference.hpp"
+#include "render/judge/grid_reference.hpp"
 #include "render/grid_renderer.hpp"
 #include "render/hierarchy_renderer.hpp"
 #include "render/trade_choice.hpp"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// An order of cells judged by those who know nothing of it: rays (render/ray_index.hpp), which meet the cells one after the other.
+// An order of cells judged by those who know nothing of it: rays (render/judge/ray_index.hpp), which meet the cells one after the other.
 #pragma once
 
 #include <cstddef>
 
 #include "project/camera.hpp"
-#include "render/ray_index.hpp"
+#include "render/judge/ray_index.hpp"
 #include "render/statistics.hpp"
 #include "sort/view_order.hpp"
 

@@ -12,7 +12,7 @@
 #include "project/camera.hpp"
 #include "render/plan.hpp"
 #include "render/prepared_surfaces.hpp"
-#include "render/ray_index.hpp"
+#include "render/judge/ray_index.hpp"
 #include "render/renderer.hpp"
 #include "render/scene.hpp"
 #include "render/statistics.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "render/grid_sampling.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 
 namespace cellproj {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "apps/scenes/measured_scenes.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -14,7 +14,7 @@
 #include "apps/scenes/measured_scenes.hpp"
 #include "mesh/error.hpp"
 #include "render/cpu/kernels.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/cut_scenes.hpp"
 #include "tests/support/differences.hpp"

@@ -16,7 +16,7 @@
 #include "apps/scenes/measured_scenes.hpp"
 #include "mesh/error.hpp"
 #include "render/cpu/kernels.hpp"
-#include "render/grid_reference.hpp"
+#include "render/judge/grid_reference.hpp"
 #include "render/grid_renderer.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/grids.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pictures of the CPU backend: against closed forms, against the judge (render/reference), against the OpenGL backend, and against
+// Pictures of the CPU backend: against closed forms, against the judge (render/judge), against the OpenGL backend, and against
 // themselves with other threads, instruction sets and cameras.
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 #include "classify/segment_method.hpp"
 #include "mesh/error.hpp"
 #include "render/cpu/kernels.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/meshes.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Isosurfaces of the CPU backend against the judge (render/reference) and closed forms: planes, spheres, layers, mixed scenes, and
+// Isosurfaces of the CPU backend against the judge (render/judge) and closed forms: planes, spheres, layers, mixed scenes, and
 // isovalues that points, faces and whole cells have.
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@
 #include "mesh/read.hpp"
 #include "mesh/tetrahedralize.hpp"
 #include "render/cpu/kernels.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/either_projection.hpp"

@@ -16,7 +16,7 @@
 
 #include "mesh/read.hpp"
 #include "mesh/tetrahedralize.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "sort/boundary.hpp"
 #include "sort/boundary_overlaps.hpp"

@@ -16,7 +16,7 @@
 #include "render/gl/grid_gl_renderer.hpp"
 #include "render/gl/grid_traversal.hpp"
 #include "render/gl/osmesa_context.hpp"
-#include "render/grid_reference.hpp"
+#include "render/judge/grid_reference.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/grids.hpp"
 #include "tests/support/scenes.hpp"

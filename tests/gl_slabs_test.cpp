@@ -13,7 +13,7 @@
 
 #include "mesh/error.hpp"
 #include "render/gl/grid_slab_outline.hpp"
-#include "render/grid_reference.hpp"
+#include "render/judge/grid_reference.hpp"
 #include "render/grid_renderer.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/grids.hpp"

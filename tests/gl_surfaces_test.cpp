@@ -18,7 +18,7 @@
 #include "mesh/error.hpp"
 #include "mesh/read.hpp"
 #include "mesh/tetrahedralize.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "render/surface_vertex.hpp"
 #include "tests/support/either_projection.hpp"

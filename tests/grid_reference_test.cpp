@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The judge of regular grids against closed forms, the judge of meshes and a plainer quadrature.
-#include "render/grid_reference.hpp"
+#include "render/judge/grid_reference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 
 #include "mesh/error.hpp"
 #include "mesh/grid_gradient.hpp"
-#include "render/ray_light.hpp"
+#include "render/judge/ray_light.hpp"
 #include "tests/support/grids.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"

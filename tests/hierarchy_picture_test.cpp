@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "mesh/error.hpp"
-#include "render/hierarchy_reference.hpp"
+#include "render/judge/hierarchy_reference.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/grid_hierarchies.hpp"
 #include "tests/support/grids.hpp"

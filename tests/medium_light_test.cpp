@@ -15,7 +15,7 @@
 #include "mesh/error.hpp"
 #include "render/plan.hpp"
 #include "render/prepared_scene.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/either_projection.hpp"

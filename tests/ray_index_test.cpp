@@ -2,7 +2,7 @@
 //
 // Cells along a ray: against the four planes of every cell, against closed forms, and where the ray meets vertices, edges and
 // faces.
-#include "render/ray_index.hpp"
+#include "render/judge/ray_index.hpp"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

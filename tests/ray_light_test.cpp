@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The judge's integral against closed forms, a plain Riemann sum, and the integral of classify/, with which it shares no code.
-#include "render/ray_light.hpp"
+#include "render/judge/ray_light.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 //
 // Isosurfaces in the judge, against closed forms: planes of linear fields, layers, surfaces in a medium, light; and the rule that
 // rays meet them exactly as often as they change sides, whatever they run through.
-#include "render/ray_surfaces.hpp"
+#include "render/judge/ray_surfaces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@
 #include "mesh/read.hpp"
 #include "mesh/scalar_field.hpp"
 #include "mesh/tetrahedralize.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/either_projection.hpp"

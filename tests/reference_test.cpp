@@ -2,7 +2,7 @@
 //
 // The judge against closed forms: boxes, slabs, overlapping and cyclic cells, gaps; and the renderer against the judge.
 #include "apps/scenes/measured_scenes.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

@@ -19,7 +19,7 @@
 #include "render/annotation/color_bar.hpp"
 #include "render/grid_renderer.hpp"
 #include "render/plan.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/cut_scenes.hpp"
 #include "tests/support/differences.hpp"

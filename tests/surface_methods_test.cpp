@@ -17,7 +17,7 @@
 #include "mesh/error.hpp"
 #include "render/clip_region.hpp"
 #include "render/prepared_surfaces.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/either_projection.hpp"

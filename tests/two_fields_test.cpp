@@ -12,8 +12,8 @@
 
 #include "mesh/error.hpp"
 #include "render/prepared_scene.hpp"
-#include "render/ray_light.hpp"
-#include "render/reference.hpp"
+#include "render/judge/ray_light.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/differences.hpp"
 #include "tests/support/meshes.hpp"

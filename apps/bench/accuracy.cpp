@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "apps/scenes/measured_scenes.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"

@@ -13,7 +13,7 @@
 #include "apps/bench/frames_process.hpp"
 #include "apps/bench/frames_scenes.hpp"
 #include "apps/scenes/measured_scenes.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/statistics.hpp"
 #if CELLPROJ_BENCH_VTK
 #include "apps/bench/vtk_frames.hpp"

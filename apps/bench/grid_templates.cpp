@@ -31,7 +31,7 @@
 #include "apps/scenes/measured_scenes.hpp"
 #include "mesh/read.hpp"
 #include "mesh/tetrahedralize.hpp"
-#include "render/grid_reference.hpp"
+#include "render/judge/grid_reference.hpp"
 #include "render/grid_renderer.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/grids.hpp"

@@ -20,7 +20,7 @@
 
 #include "apps/bench/cpu_time.hpp"
 #include "apps/scenes/measured_scenes.hpp"
-#include "render/grid_reference.hpp"
+#include "render/judge/grid_reference.hpp"
 #include "render/grid_renderer.hpp"
 #include "tests/support/grids.hpp"
 #include "tests/support/scenes.hpp"

@@ -18,7 +18,7 @@
 #include "mesh/tetrahedralize.hpp"
 #include "render/prepared_surfaces.hpp"
 #include "render/prepared_scene.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "render/renderer.hpp"
 #include "tests/support/meshes.hpp"
 

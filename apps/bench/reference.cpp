@@ -13,7 +13,7 @@
 #include "apps/scenes/measured_scenes.hpp"
 #include "mesh/read.hpp"
 #include "mesh/tetrahedralize.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 #include "tests/support/meshes.hpp"
 
 namespace {

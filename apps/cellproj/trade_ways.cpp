@@ -8,7 +8,7 @@
 #include "grid_options.hpp"
 #include "mesh/error.hpp"
 #include "render/grid_trade.hpp"
-#include "render/hierarchy_reference.hpp"
+#include "render/judge/hierarchy_reference.hpp"
 
 namespace cellproj::cli {
 

@@ -15,7 +15,7 @@
 
 #include "classify/segment_integral.hpp"
 #include "render/image.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 
 namespace cellproj::testing_support {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The judges of orders: the sequence of cells along rays, found with no order and no neighbours (render/ray_index.hpp), and the sides of
+// The judges of orders: the sequence of cells along rays, found with no order and no neighbours (render/judge/ray_index.hpp), and the sides of
 // faces.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 #include "project/camera.hpp"
 #include "render/order_check.hpp"
-#include "render/ray_index.hpp"
+#include "render/judge/ray_index.hpp"
 #include "sort/view_order.hpp"
 
 namespace cellproj::testing_support {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "render/grid_reference.hpp"
+#include "render/judge/grid_reference.hpp"
 #include "render/hierarchy_renderer.hpp"
 
 namespace cellproj {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/ray_window.hpp"
+#include "render/judge/ray_window.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "render/ray_frame.hpp"
+#include "render/judge/ray_frame.hpp"
 
 namespace cellproj {
 

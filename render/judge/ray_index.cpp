@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/ray_index.hpp"
+#include "render/judge/ray_index.hpp"
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -14,7 +14,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "render/ray_frame.hpp"
+#include "render/judge/ray_frame.hpp"
 
 namespace cellproj {
 

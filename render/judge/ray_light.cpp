@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/ray_light.hpp"
+#include "render/judge/ray_light.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <glm/common.hpp>
 
-#include "render/ray_quadrature.hpp"
+#include "render/judge/ray_quadrature.hpp"
 
 namespace cellproj {
 

@@ -12,8 +12,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "render/ray_index.hpp"
-#include "render/ray_surfaces.hpp"
+#include "render/judge/ray_index.hpp"
+#include "render/judge/ray_surfaces.hpp"
 #include "render/scene.hpp"
 
 namespace cellproj {

@@ -8,7 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "render/ray_index.hpp"
+#include "render/judge/ray_index.hpp"
 
 namespace cellproj {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/cubic.hpp"
+#include "render/judge/cubic.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "classify/transfer_function.hpp"
-#include "render/cubic.hpp"
+#include "render/judge/cubic.hpp"
 
 namespace cellproj {
 

@@ -26,9 +26,9 @@
 #include "classify/transfer_function.hpp"
 #include "mesh/grid.hpp"
 #include "project/camera.hpp"
-#include "render/cubic_light.hpp"
+#include "render/judge/cubic_light.hpp"
 #include "render/grid_scene.hpp"
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 
 namespace cellproj {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/ray_surfaces.hpp"
+#include "render/judge/ray_surfaces.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/cubic_light.hpp"
+#include "render/judge/cubic_light.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -9,7 +9,7 @@
 
 #include <glm/common.hpp>
 
-#include "render/ray_quadrature.hpp"
+#include "render/judge/ray_quadrature.hpp"
 
 namespace cellproj {
 

@@ -33,10 +33,10 @@
 #include "mesh/gradient.hpp"
 #include "project/camera.hpp"
 #include "render/image.hpp"
-#include "render/pixel_truths.hpp"
-#include "render/ray_index.hpp"
-#include "render/ray_surfaces.hpp"
-#include "render/ray_window.hpp"
+#include "render/judge/pixel_truths.hpp"
+#include "render/judge/ray_index.hpp"
+#include "render/judge/ray_surfaces.hpp"
+#include "render/judge/ray_window.hpp"
 #include "render/scene.hpp"
 
 namespace cellproj {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/grid_reference.hpp"
+#include "render/judge/grid_reference.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/reference.hpp"
+#include "render/judge/reference.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <glm/common.hpp>
 
 #include "mesh/error.hpp"
-#include "render/ray_light.hpp"
+#include "render/judge/ray_light.hpp"
 
 namespace cellproj {
 

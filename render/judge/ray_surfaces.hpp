@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "classify/isosurface.hpp"
-#include "render/ray_index.hpp"
-#include "render/ray_light.hpp"
+#include "render/judge/ray_index.hpp"
+#include "render/judge/ray_light.hpp"
 #include "render/scene.hpp"
 
 namespace cellproj {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render/hierarchy_reference.hpp"
+#include "render/judge/hierarchy_reference.hpp"
 
 #include <algorithm>
 #include <cassert>
