@@ -31,7 +31,7 @@ public:
     explicit CpuGridRenderer(int threads) : arena_(threads > 0 ? threads : oneapi::tbb::task_arena::automatic) {}
 
     void prepare(const GridScene& scene, const GridQuality& quality) override {
-        require_grid_drawn(Backend::cpu, quality, has_surfaces(scene));
+        require_grid_drawn(Backend::cpu, quality, grid_shading(scene));
         arena_.execute([&] { prepare_here(scene, quality); });
     }
 
@@ -39,7 +39,7 @@ public:
                  Statistics* statistics) override {
         validate(camera, "camera");
         validate(size, "size");
-        require_grid_drawn(Backend::cpu, quality, has_surfaces(scene));
+        require_grid_drawn(Backend::cpu, quality, grid_shading(scene));
         return arena_.execute([&] { return render_here(scene, camera, size, quality, statistics); });
     }
 
