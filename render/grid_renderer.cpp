@@ -21,9 +21,8 @@ void require_grid_drawn(Backend backend, const GridQuality& quality, const GridS
     if (quality.target != TargetFormat::rgba32f) refuse("--target", "rgba32f for a regular grid", to_string(quality.target), as_tets);
     if (quality.sampling.cut != GridSampling::Cut::cells)
         refuse("--sampling", "cells for a regular grid on the CPU", to_string(quality.sampling), "use the OpenGL backend (--backend gl)");
-    if (shading.lit_medium) refuse("--shade-volume", "a regular grid's volume as it is, not lit", "--shade-volume", as_tets);
-    if (shading.isosurfaces && !takes_surfaces(quality.method))
-        refuse("--method", "a method of light per pixel, blended once, for isosurfaces", to_string(quality.method), "leave it out");
+    if ((shading.isosurfaces || shading.lit_medium) && !takes_surfaces(quality.method))
+        refuse("--method", "a method of light per pixel, blended once, for isosurfaces and lit media", to_string(quality.method), "leave it out");
 }
 
 void require_grid_cut(const GridQuality& quality, const RayCuts& cuts) {

@@ -17,6 +17,7 @@
 
 #include "apps/scenes/measured_scenes.hpp"
 #include "mesh/error.hpp"
+#include "render/cpu/kernels.hpp"
 #include "render/grid_renderer.hpp"
 #include "render/judge/cubic_light.hpp"
 #include "render/judge/grid_reference.hpp"
@@ -239,6 +240,260 @@ TEST(GridMediumLight, OfWhatHasNoGradient) {
     Lighting bad;
     bad.exponent = 0;
     EXPECT_THROW(judge(lit(unit_cube(3, waves), ramp(), Shading::flat, bad)), Error);
+}
+
+// ---- The CPU backend
+
+GridRenderer& cpu() {
+    static const auto shared = make_grid_renderer(Backend::cpu);
+    return *shared;
+}
+
+GridQuality by(const std::string& method) { return {.method = parse_method(method)}; }
+
+// `tolerance`: where more is off, against what the judge sees within a thousandth of a pixel, too: a ray that just touches a surface or a step sees
+// it or not, by float32.
+double error_of(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality = {}, double tolerance = 1e-5) {
+    const Image image = cpu().render(scene, camera, size, quality);
+    EXPECT_EQ(count_non_finite(image), 0U);
+    const GridReference reference = judge(scene);
+    double most = 0;
+    std::vector<PixelId> doubtful;
+    for (const PixelTruth& truth : reference.pixels(camera, size, all_pixels(size))) {
+        const glm::dvec4 errors = error_of_pixel(image, truth);
+        const double error = std::max({errors.r, errors.g, errors.b, errors.a});
+        if (error > tolerance) doubtful.push_back(truth.pixel);
+        else most = std::max(most, error);
+    }
+    EXPECT_LT(doubtful.size(), all_pixels(size).size() / 20);
+    return doubtful.empty() ? most : std::max(most, largest(compare(image, reference.pixels(camera, size, doubtful, 1e-3))));
+}
+
+GridAxis uneven_axis(std::mt19937_64& random, std::size_t points) {
+    std::uniform_real_distribution<double> both(-1, 1);
+    GridAxis axis;
+    for (double x = 0; axis.points() < points; x += std::pow(10, 0.5 * both(random)) / static_cast<double>(points)) axis.coordinates.push_back(x);
+    return axis;
+}
+
+// Homogeneous media are exact in the stated model; what is left is float32. Noise: gradients turn from cell to cell. Even and uneven axes, blanked
+// cells, surfaces in the medium.
+TEST_P(GridMediumLightOfEither, AgreesWithTheJudge) {
+    std::mt19937_64 random(603);
+    std::uniform_real_distribution<double> unit(0, 1);
+    double most[2]{};
+    for (int trial = 0; trial < (sanitized ? 6 : 16); ++trial) {
+        const Shading shading = trial % 2 == 0 ? Shading::flat : Shading::smooth;
+        const bool uneven = trial / 2 % 2 == 1, surfaces = trial / 4 % 2 == 1;
+        const auto value = [&](const glm::dvec3&) { return unit(random); };
+        const GridAxis even = uniform_axis(0, 0.2, 6);
+        Grid grid = uneven ? grid_of({uneven_axis(random, 5), uneven_axis(random, 6), uneven_axis(random, 4)}, value) : grid_of({even, even, even}, value);
+        if (trial % 3 == 0) {
+            grid.blanked.assign(grid.cell_count(), 0);
+            for (auto& blanked : grid.blanked) blanked = unit(random) < 0.3 ? 1 : 0;
+        }
+        const Camera camera = frame_bounds(grid.bounds(), GetParam(), {unit(random), -unit(random), unit(random)}, {0.1, 0.2, 1}, 1.2);
+        const double depth = 2 / glm::length(grid.bounds().high - grid.bounds().low);
+        const GridScene scene = lit(grid, constant_medium(depth), shading, two_lights, surfaces ? glass : std::vector<IsoSurface>{});
+        const double error = error_of(scene, camera, few, {}, surfaces ? 2e-4 : 1e-5);
+        EXPECT_LT(error, surfaces ? 2e-4 : 1e-5) << trial;  // of surfaces' normals: grid_surfaces_test
+        most[surfaces ? 1 : 0] = std::max(most[surfaces ? 1 : 0], error);
+    }
+    std::printf("[ MEASURED ] noise, homogeneous: %.1e; with surfaces %.1e\n", most[0], most[1]);
+}
+
+// The same of every number of lines in a cell, and of light that nothing absorbs.
+TEST_P(GridMediumLightOfEither, AgreesByEveryMethod) {
+    const Camera camera = view_of_unit_cube(GetParam());
+    const TransferFunction glow(OpticalModel::emitter, {{0, {0.1, 0.2, 0.4}}}, {{0, 0}});
+    for (const Shading shading : {Shading::flat, Shading::smooth}) {
+        // Two steps of one height: a constant that exact takes for a function, and cuts cells.
+        const TransferFunction cut(OpticalModel::density, {{0, {1.0, 0.5, 0.25}}}, {{0, 2}, {0.5, 2.001}, {1, 2}});
+        for (const char* method : {"integral", "exact:1e-5", "linear:8", "homogeneous", "preint2d-exp:256", "preint3d:64"}) {
+            const GridScene scene = lit(unit_cube(6, waves), method[0] == 'e' ? cut : constant_medium(2), shading, two_lights, glass);
+            // Steps of preint3d in depth; the function that exact walks through is not quite constant.
+            const double bound = method == std::string("preint3d:64") ? 2e-3 : method == std::string("exact:1e-5") ? 5e-4 : 2e-4;
+            EXPECT_LT(error_of(scene, camera, few, by(method), bound), bound) << method;
+        }
+        EXPECT_LT(error_of(lit(unit_cube(6, waves), glow, shading), camera, few), 1e-5);
+        // One gradient everywhere: whatever a method makes of the medium, times one share in a parallel view.
+        const GridScene scene = lit(unit_cube(6, linear), ramp(), shading);
+        const Camera parallel = view_of_unit_cube(Projection::parallel);
+        const glm::dvec3 to_eye = glm::normalize(parallel.eye - parallel.center);
+        const glm::dvec4 share(lit_share(two_lights, glm::dvec3(1, 0.5, 0.25) / (1.75 * weak_gradient) * (std::sqrt(3.0) / 2), to_eye), 1);
+        for (const char* method : {"integral", "exact:1e-5", "linear:8", "homogeneous", "average", "preint2d-exp:256", "preint3d:64"}) {
+            const Image found = cpu().render(scene, parallel, few, by(method)), plain = cpu().render({scene.grid, scene.transfer}, parallel, few, by(method));
+            for (std::size_t i = 0; i < found.pixels.size(); ++i)
+                ASSERT_LT(max_difference(glm::dvec4(found.pixels[i]), share * glm::dvec4(plain.pixels[i])), 1e-5) << method;
+        }
+    }
+}
+
+// Where colour and extinction change inside a cell, the place of a segment's light is that of a homogeneous one: second order in its size.
+// Cutting cells into lines makes it that of shorter ones.
+TEST_P(GridMediumLightOfEither, OfARampErrsBySecondOrder) {
+    const Camera camera = view_of_unit_cube(GetParam());
+    std::vector<double> rms;
+    for (const std::size_t n : {4U, 8U, 16U}) {
+        const GridScene scene = lit(unit_cube(n, waves), ramp(), Shading::smooth);
+        const auto truths = judge(scene).pixels(camera, small, all_pixels(small));
+        const ImageError lines = compare(cpu().render(scene, camera, small), truths), exact = compare(cpu().render(scene, camera, small, by("exact:1e-5")), truths);
+        std::printf("[ MEASURED ] ramp, %zu³ cells: integral rms %.1e, largest %.1e; exact:1e-5 %.1e, %.1e\n", n, lines.color.rms, lines.color.maximum, exact.color.rms, exact.color.maximum);
+        rms.push_back(lines.color.rms);
+        EXPECT_LT(exact.color.rms, lines.color.rms);
+    }
+    EXPECT_LT(rms[1], rms[0] / 2.5);
+    EXPECT_LT(rms[2], rms[1] / 2.5);
+}
+
+// Bricks that show nothing are leapt over; what rays send where they come out is found anew.
+TEST_P(GridMediumLightOfEither, GoesOnBehindEmptySpace) {
+    const auto blobs = [](const glm::dvec3& p) {
+        return std::exp(-80 * glm::dot(p - glm::dvec3(0.2, 0.3, 0.3), p - glm::dvec3(0.2, 0.3, 0.3))) + std::exp(-60 * glm::dot(p - glm::dvec3(0.8, 0.7, 0.6), p - glm::dvec3(0.8, 0.7, 0.6)));
+    };
+    // Steps: homogeneous where there is anything.
+    const TransferFunction shells(OpticalModel::density, {{0, {1, 0.5, 0.25}}}, {{0, 0}, {0.25, 0}, {0.25, 8}, {1, 8}});
+    const Camera camera = view_of_unit_cube(GetParam());
+    for (const Shading shading : {Shading::flat, Shading::smooth}) {
+        const GridScene scene = lit(unit_cube(32, blobs), shells, shading);
+        Statistics statistics;
+        cpu().render(scene, camera, few, by("exact:1e-5"), &statistics);
+        EXPECT_GT(statistics.counts.culled, statistics.counts.cells / 2);
+        // Where a step lies in a cell, its light is not in the middle of what the cell shows: a share's change over the cell, at most.
+        EXPECT_LT(error_of(scene, camera, few, by("exact:1e-5"), 2e-3), 2e-3);
+    }
+}
+
+// Of rays that begin or end in cells, shares are those of the gradients there. So a grid that is cut looks as the part that is left, whose cells
+// end there: of a field that is trilinear in the whole, gradients of cells and points are the same in both.
+TEST_P(GridMediumLightOfEither, GoesOnThroughCuts) {
+    const auto field = [](const glm::dvec3& p) { return (1 + p.x) * (1 + p.y) * (1 + p.z) / 8; };
+    const Camera camera = view_of_unit_cube(GetParam());
+    GridAxis rest = uniform_axis(0, 0.2, 6);
+    rest.coordinates = {0.27, 0.4, 0.6, 0.8, 1};
+    rest.spacing.reset();
+    const GridAxis whole = uniform_axis(0, 0.2, 6);
+    for (const Shading shading : {Shading::flat, Shading::smooth}) {
+        GridScene scene = lit(grid_of({whole, whole, whole}, field), constant_medium(2), shading, two_lights, glass);
+        scene.clip = std::make_shared<ClipRegion>(ClipRegion{.half_spaces = {{.point = {0.27, 0, 0}, .normal = {1, 0, 0}}}});
+        const Image cut = cpu().render(scene, camera, small);
+        const GridReference part = judge(lit(grid_of({rest, whole, whole}, field), constant_medium(2), shading, two_lights, glass));
+        // Range and size of the part are other units of weak gradients: 1e-6 of the light.
+        EXPECT_LT(largest(compare(cut, part.pixels(camera, small, all_pixels(small), 1e-3))), 5e-5) << static_cast<int>(shading);
+    }
+    Camera inside = view_of_unit_cube(Projection::perspective);
+    inside.eye = {0.31, 0.42, 0.53};
+    inside.center = {0.9, 0.8, 0.6};
+    inside.fov_y_degrees = 70;
+    for (const Shading shading : {Shading::flat, Shading::smooth})
+        EXPECT_LT(error_of(lit(unit_cube(5, waves), constant_medium(2), shading), inside, few), 1e-5);
+}
+
+// Oblique planes and bodies: a linear field is that of the tetrahedra.
+TEST_P(GridMediumLightOfEither, OfALinearFieldIsCutAsTetrahedra) {
+    const Camera camera = view_of_unit_cube(GetParam());
+    GridScene scene = lit(unit_cube(5, linear), constant_medium(2), Shading::smooth, two_lights, glass);
+    scene.clip = std::make_shared<ClipRegion>(ClipRegion{.half_spaces = {{.point = glm::dvec3(0.5), .normal = {1, 0.3, -0.2}}}});
+    Scene mesh = scene_of(grid_mesh(5), linear, constant_medium(2));
+    mesh.surfaces = scene.surfaces;
+    mesh.clip = scene.clip;
+    EXPECT_LT(largest(compare(cpu().render(scene, camera, small), Reference(mesh).picture(camera, small, 1e-3))), 2e-5);
+}
+
+// The side of higher scalars is lit like that of lower ones, or by ambient light alone.
+TEST_P(GridMediumLightOfEither, HasTwoSidesOrOne) {
+    const Camera from_low = view_of_unit_cube(GetParam(), {-5, -2, -1});
+    const auto reversed = [](const glm::dvec3& p) { return 1 - linear(p); };
+    Lighting lighting;  // a headlight
+    lighting.ambient = glm::dvec3(0.1, 0.2, 0.3);
+    const auto picture = [&](const auto& field) { return cpu().render(lit(unit_cube(4, field), constant_medium(2), Shading::flat, lighting), from_low, few); };
+    EXPECT_LT(max_difference(picture(linear), picture(reversed)), 1e-5);
+    lighting.two_sided = false;
+    const glm::vec4 center = picture(reversed).at(few.width / 2, few.height / 2);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(center[k], center.a * glm::dvec3(1, 0.5, 0.25)[k] * lighting.ambient[k], 1e-5);
+}
+
+// Constant fields, sizes, places and ranges of any magnitude, cells of 1e-12 of the grid: finite, and opacity as without light.
+TEST(GridMediumLight, ExtremesStayFinite) {
+    std::mt19937_64 random(604);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int trial = 0; trial < (sanitized ? 40 : 150); ++trial) {
+        const double range = std::pow(10, 20 * unit(random));
+        std::array<GridAxis, 3> axes;
+        for (GridAxis& axis : axes) axis = uniform_axis(1e6 * (trial % 2), std::pow(10, 3 * unit(random)), 2 + random() % 9);
+        if (trial % 4 == 0) axes[0].coordinates.back() += 1e6, axes[0].spacing.reset();
+        if (trial % 6 == 2) axes[1].coordinates = {0, 1e-12, 1e-3, 1, 2}, axes[1].spacing.reset();
+        if (trial % 12 == 8) axes[2].coordinates = {0, 1e-41, 1}, axes[2].spacing.reset();
+        const Grid grid = grid_of(axes, [&](const glm::dvec3&) { return trial % 7 == 0 ? range : range * std::round(2 * unit(random)) / 2; });
+        const Camera camera = frame_bounds(grid.bounds(), trial % 2 == 0 ? Projection::parallel : Projection::perspective,
+                                           {unit(random), unit(random), trial % 5 == 0 ? 0 : unit(random)}, {0.1, 0.1, 1}, 1.2);
+        const GridScene scene = lit(grid, constant_medium(1 / grid.bounds().diagonal()), trial % 3 == 0 ? Shading::smooth : Shading::flat);
+        const GridQuality quality = by(trial % 2 == 0 ? "integral" : "exact:1e-3");
+        const Image image = cpu().render(scene, camera, few, quality), plain = cpu().render({scene.grid, scene.transfer}, camera, few, quality);
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+            for (int k = 0; k < 4; ++k) ASSERT_TRUE(std::isfinite(image.pixels[i][k]) && image.pixels[i][k] >= 0 && image.pixels[i][k] <= 2) << trial;
+            ASSERT_NEAR(image.pixels[i].a, plain.pixels[i].a, 1e-5) << trial;
+            if (trial % 7 == 0) {  // no gradient
+                ASSERT_NEAR(image.pixels[i].r, plain.pixels[i].r, 1e-5) << trial;
+            }
+        }
+    }
+}
+
+TEST(GridMediumLight, ThreadsAndInstructionSetsDoNotMatter) {
+    const GridScene scene = lit(unit_cube(20, waves), ramp(), Shading::smooth, two_lights, glass);
+    const Camera camera = view_of_unit_cube(Projection::perspective);
+    const Image image = cpu().render(scene, camera, {100, 70});
+    EXPECT_EQ(max_difference(image, make_grid_renderer(Backend::cpu, {.threads = 1})->render(scene, camera, {100, 70})), 0);
+    const std::string best = cpu::instruction_set();
+    for (const std::string& name : cpu::instruction_sets()) {
+        cpu::use_instruction_set(name);
+        EXPECT_LT(max_difference(image, cpu().render(scene, camera, {100, 70})), 1e-3) << name;
+    }
+    cpu::use_instruction_set(best);
+}
+
+// From scene to scene in one renderer: with light and without, of another function that shows nothing, of another grid.
+TEST(GridMediumLight, ComesAndGoes) {
+    const Camera camera = view_of_unit_cube(Projection::parallel);
+    GridScene scene = lit(unit_cube(10, waves), ramp(), Shading::flat);
+    const auto same = [&] {
+        const Image fresh = make_grid_renderer(Backend::cpu)->render(scene, camera, few);
+        EXPECT_EQ(max_difference(cpu().render(scene, camera, few), fresh), 0);
+        return fresh;
+    };
+    const Image flat = same();
+    scene.surfaces = nullptr;
+    const Image plain = same();
+    EXPECT_GT(max_difference(flat, plain), 0.05);
+    for (const Shading shading : {Shading::smooth, Shading::unlit, Shading::flat, Shading::smooth}) {
+        scene.surfaces = lit_by(two_lights, shading);
+        EXPECT_EQ(max_difference(same(), plain) < 1e-5, shading == Shading::unlit);
+    }
+    scene.transfer = std::make_shared<const TransferFunction>(nothing());
+    EXPECT_EQ(max_difference(same(), Image(few.width, few.height)), 0);
+    scene.surfaces = lit_by(two_lights, Shading::smooth, glass);
+    same();
+    scene.transfer = std::make_shared<const TransferFunction>(ramp());
+    scene.grid = std::make_shared<const Grid>(unit_cube(7, linear));
+    same();
+}
+
+TEST(GridMediumLight, WhatCannotBeLitIsRefused) {
+    const Camera camera = view_of_unit_cube(Projection::parallel);
+    const GridScene scene = lit(unit_cube(3, waves), ramp(), Shading::flat);
+    EXPECT_NO_THROW(cpu().render(scene, camera, few));
+    EXPECT_THROW(cpu().render(scene, camera, few, by("linear:8:half")), Error);
+    Grid cells = unit_cube(3, waves);
+    cells.location = FieldLocation::cells;
+    cells.values.resize(cells.cell_count());
+    EXPECT_THROW(cpu().render(lit(cells, ramp(), Shading::flat), camera, few), Error);
+    EXPECT_NO_THROW(cpu().render(lit(cells, ramp(), Shading::unlit), camera, few));
+    Lighting dark;
+    dark.exponent = 0;
+    EXPECT_THROW(cpu().render(lit(*scene.grid, ramp(), Shading::flat, dark), camera, few), Error);
+    EXPECT_THROW(require_grid_drawn(Backend::gl_osmesa, {}, grid_shading(scene)), Error);
+    EXPECT_NO_THROW(cpu().render(scene, camera, few));
 }
 
 }  // namespace

@@ -46,14 +46,14 @@ public:
 private:
     void prepare_here(const GridScene& scene, const GridQuality& quality);
     Image render_here(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality, Statistics* out);
-    void set_surfaces();
+    void set_surfaces(bool medium);
     std::size_t draw(Image& image, const ScreenTransform& transform, std::span<const DepthInterval> kept) const;
 
     oneapi::tbb::task_arena arena_;
     GridScene scene_;
     std::optional<GridVolume> volume_;              // of scene_.grid
     std::vector<glm::vec3> gradients_;              // at its points, where shading wants them
-    GridSurfaces surfaces_;                         // of scene_; count 0: none
+    GridSurfaces surfaces_;                         // of scene_
     Method method_;
     std::optional<Classification> classification_;  // of method_ and scene_.transfer
     float bend_ = 0;
@@ -80,14 +80,15 @@ void CpuGridRenderer::prepare_here(const GridScene& scene, const GridQuality& qu
     classification_.reset();
     classification_.emplace(method_, transfer, volume_->mean_chord());
     volume_->set_light(transfer, has_surfaces(scene) ? kept_isovalues(scene.surfaces->isosurfaces, units) : std::vector<float>{});
-    set_surfaces();
-    surfaces_.medium = transfer.visible(0.0, 1.0);
+    set_surfaces(transfer.visible(0.0, 1.0));
     bend_ = bend_of(method_, transfer);
 }
 
-void CpuGridRenderer::set_surfaces() {
+void CpuGridRenderer::set_surfaces(bool medium) {
     surfaces_ = volume_->surfaces();
-    if (!has_surfaces(scene_)) return;
+    surfaces_.medium = medium;
+    surfaces_.lit_medium = medium && has_lit_medium(scene_);
+    if (!has_surfaces(scene_) && !surfaces_.lit_medium) return;
     const SurfaceScene& scene = *scene_.surfaces;
     for (const SurfaceMaterial& material : materials_of(scene.isosurfaces))
         for (const glm::vec3& color : {material.front, material.back})
@@ -139,7 +140,7 @@ std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform
     return draw_tiles(image, [&](const Tile& tile) {
         GridRays rays;
         volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, kept, rays);
-        return draw_grid_tile(cells, surfaces_.count > 0 ? &surfaces_ : nullptr, rays, shading, bend_, tile);
+        return draw_grid_tile(cells, surfaces_.count > 0 || surfaces_.lit_medium ? &surfaces_ : nullptr, rays, shading, bend_, tile);
     });
 }
 
