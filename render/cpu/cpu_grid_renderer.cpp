@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "classify/segment_method.hpp"
+#include "mesh/error.hpp"
 #include "render/cpu/backend_version.hpp"
 #include "render/cpu/classification.hpp"
 #include "render/cpu/grid_bend.hpp"
@@ -96,6 +97,11 @@ void CpuGridRenderer::set_surfaces(bool medium) {
     surfaces_.shading = scene.shading;
     surfaces_.lighting = kernel_lighting(scene.lighting);
     if (scene.shading != SurfaceShading::smooth) return;
+    // The kernels count their parts by 32 bits.
+    if (constexpr std::size_t most = std::numeric_limits<std::int32_t>::max() / 3; scene_.grid->values.size() > most) {
+        throw Error({ErrorKind::data, "grid", "at most " + std::to_string(most) + " points for smooth shading", std::to_string(scene_.grid->values.size()),
+                     "use flat shading (--shading flat), resample it, or cut a part out"});
+    }
     if (gradients_.empty()) gradients_ = kept_gradients(*scene_.grid, volume_->units());
     surfaces_.gradients = &gradients_[0].x;
 }
