@@ -28,7 +28,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace grid_medium_light_test {
 
 using namespace testing_support;
 using scenes::waves;

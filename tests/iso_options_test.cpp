@@ -9,7 +9,7 @@
 
 #include "tests/support/voxel_scene_test.hpp"
 
-namespace {
+namespace iso_options_test {
 
 using cellproj::testing_support::Outcome;
 using cellproj::testing_support::Pixel;
