@@ -60,7 +60,7 @@ TEST_F(IsoOptions, ShadingAndLight) {
     EXPECT_EQ(run("--iso 5 --shading round").code, 2);
     EXPECT_EQ(run("--shading flat").code, 2);
     // Ambient light is white, a tenth; the rest of each light has its colour.
-    EXPECT_EQ(seen("--iso 5:#ffffff --light 0,0,-3:red --light eye:0,0,1"), (Pixel{255, 26, 255}));
+    EXPECT_EQ(seen("--iso 5:#ffffff --light 0,0,-3:1,0,0 --light eye:0,0,1"), (Pixel{255, 26, 255}));
     EXPECT_EQ(seen("--iso 5:#ffffff --light 0,0,1:red --light eye:0,0.5,0"), (Pixel{26, 140, 26}));
     EXPECT_NE(content("p.png").find("--light 0,0,1:red --light eye:0,0.5,0"), std::string::npos);
     EXPECT_EQ(run("--volume").code, 2);
