@@ -87,7 +87,7 @@ QualityChoice choose_grid_quality(GridRenderer& renderer, Backend backend, const
     qualities.insert(qualities.end() - 1, {loose_lines(max_error), options.target, sampling});
     qualities = drawn(std::move(qualities), backend, scene);
     assert(!qualities.empty());
-    const GridReference reference(scene.grid, scene.transfer, scene.surfaces);
+    const GridReference reference(scene);
     return choose_way(ways_of(renderer, scene, camera, size, qualities), judge_by(reference, camera, size), max_error, options.how);
 }
 

@@ -153,6 +153,16 @@ TEST_F(GridCommand, ABoundChoosesAWayAndExplainTellsIt) {
     EXPECT_NE(never.text.find("warning: no method was within"), std::string::npos) << never.text;
 }
 
+TEST_F(GridCommand, ABoundHoldsForWhatIsCut) {
+    for (const char* cuts : {"--clip 2,2,2:1,2,3", "--clip 2,2,2:1,2,3 --caps", "--slice 2,2,2:3,2,1 --volume", "--surface demo:sphere"}) {
+        const Outcome outcome = run_program(folder_, std::string("render --size 36x30 -o p.png --stats s.json --max-error 0.01 ") + voxels + " " + cuts);
+        ASSERT_EQ(outcome.code, 0) << outcome.text;
+        const auto picture = nlohmann::json::parse(content("s.json")).at("pictures").at(0);
+        EXPECT_LE(picture.at("error"), 0.01) << cuts;
+        EXPECT_EQ(picture.at("drawn_as"), "grid") << cuts;
+    }
+}
+
 // One table of all that draws the grid: rays, OpenGL's cells and slabs, and the tetrahedra it is cut into.
 TEST_F(GridCommand, TradeMeasuresEveryWaySideBySide) {
     const auto trade = [&](const std::string& options) { return run_program(folder_, std::string("trade ") + voxels + " --size 30x30 --rounds 1 --json t.json " + options); };

@@ -115,6 +115,22 @@ TEST_F(TradeCommand, MeasuresIsosurfaces) {
     expect_refused(1, "render", "--iso 7 --iso-method table --backend cpu -o p.png", {"--iso-method", "gl"});
 }
 
+// Of what is clipped, sliced and hidden the judge knows the same.
+TEST_F(TradeCommand, MeasuresWhatIsCut) {
+    for (const char* cuts : {"--clip 1,1,1.2:0.2,0.1,1", "--clip 1,1,1.2:0.2,0.1,1 --caps", "--slice 1,1,0.7:0.1,0.2,1 --volume", "--surface demo:sphere"}) {
+        const Outcome outcome = run("trade", std::string("--rounds 1 --json t.json ") + cuts);
+        ASSERT_EQ(outcome.code, 0) << outcome.text;
+        EXPECT_EQ(outcome.text.find("shirley-tuchman"), std::string::npos) << outcome.text;
+        for (const auto& row : nlohmann::json::parse(content("t.json")).at("methods")) {
+            const std::string method = row.at("method");
+            if (method.rfind("exact", 0) != 0 || row.at("target") != "rgba32f") continue;
+            EXPECT_LT(row.at("error").at("color").at("maximum"), 1e-4) << cuts << " " << method;
+        }
+    }
+    std::filesystem::remove(folder_ / "t.json");
+    expect_refused(1, "trade", "--clip 1,1,1:0,0,1 --method shirley-tuchman", {"--method", "1 clipping plane", "shirley-tuchman"});
+}
+
 TEST_F(TradeCommand, ThePageHoldsAllItShows) {
     ASSERT_EQ(run("trade", "--method average --method integral --rounds 1 -o t.html").code, 0);
     const std::string page = content("t.html");

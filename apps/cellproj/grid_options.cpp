@@ -25,8 +25,6 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
         refuse("--iso-method", "exact for isosurfaces of a regular grid", "a table");
     if (wishes.named_order) refuse("--order", "auto for a regular grid, whose cells need no sorting", "another order");
     if (wishes.quality.check_rays > 0) refuse("--verify-order", "a mesh, whose cells are sorted", "a regular grid");
-    // The judge of grids knows neither clip regions nor bodies and slices.
-    if (wishes.measured_method && !text_of(options.cuts).empty()) refuse("--max-error", "--method for a regular grid that is cut, such as exact:1e-3", "--max-error");
     const GridQuality quality{wishes.quality.method, wishes.quality.target, wishes.sampling};
     require_grid_drawn(wishes.backend, quality, {options.iso.any(), options.iso.shade_volume});
     require_grid_cut(quality, planned_cuts(options.cuts));

@@ -82,10 +82,10 @@ DrawnAs drawn_as(const TradeCommandOptions& options) {
     return choose_drawn_as(options.scene, {Backend::cpu, {}, {}, false, false});
 }
 
-// A hierarchy of grids with isosurfaces or lit as tetrahedra: its renderer knows neither.
+// A hierarchy of grids that is cut, lit or has isosurfaces as tetrahedra: its renderer knows none of it.
 LoadedScene load(const TradeCommandOptions& options, DrawnAs drawn) {
     LoadedScene loaded = load_scene(options.scene, drawn);
-    if (!loaded.hierarchy || !options.scene.iso.any_shaded()) return loaded;
+    if (!loaded.hierarchy || !(options.scene.iso.any_shaded() || planned_cuts(options.scene.cuts).any())) return loaded;
     if (drawn == DrawnAs::grid) require_hierarchy_drawn(options.scene, Backend::cpu, {});
     return load_scene(options.scene, DrawnAs::tets);
 }
@@ -156,6 +156,7 @@ void add_trade_command(CLI::App& app) {
     add_iso_options(*command, options->scene.iso);
     command->add_option("--iso-method", options->choices.iso_methods, std::string(iso_method_help) + " (again for more)")
         ->allow_extra_args(false)->needs("--iso");
+    add_cut_options(*command, options->scene.cuts);
     command->add_option("--sample", options->sample,
                         "Pixels judged by rays in float64; default: all that see the mesh when that takes less than 30 s, else 20000")
         ->check(CLI::Range(1, 100000000));
@@ -168,7 +169,7 @@ void add_trade_command(CLI::App& app) {
     command->add_option("--csv", options->csv, "Write the table as CSV");
     command->add_option("--json", options->json, "Write the table as JSON");
     command->callback([options] {
-        require_something_in_volume(options->scene.iso, false);
+        require_something_in_volume(options->scene.iso, !options->scene.cuts.slices.empty());
         options->choices.wish = parse_backend(options->backend);
         if (depends_on_gpu(options->choices.wish)) options->choices.gpu = find_gpu();
         run_trade(*options);

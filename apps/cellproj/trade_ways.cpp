@@ -41,11 +41,14 @@ Backend backend_for(const SceneOptions& scene, const TradeChoices& choices, cons
     return wished_backend(choices.wish, quality, scene.fields(), choices.gpu);
 }
 
+// Light at vertices knows no place on a ray.
+bool knows_cuts(const SceneOptions& scene, const Quality& quality) { return !planned_cuts(scene.cuts).any() || !light_at_vertices(quality.method); }
+
 // Those that can draw the scene.
 std::vector<Quality> possible_qualities(const SceneOptions& scene, const TradeChoices& choices) {
     std::vector<Quality> qualities = scene.iso.any_shaded() ? surface_qualities() : trade_qualities();
     std::erase_if(qualities, [&](const Quality& quality) {
-        return !draws(backend_for(scene, choices, quality), quality, scene.fields()) ||
+        return !draws(backend_for(scene, choices, quality), quality, scene.fields()) || !knows_cuts(scene, quality) ||
                (!scene.iso.any() && quality.surfaces.kind != SurfaceMethodKind::exact);
     });
     return qualities;
@@ -86,7 +89,13 @@ std::vector<Quality> choose_qualities(const SceneOptions& scene, const TradeChoi
 
 void require_all_drawn(const SceneOptions& scene, const TradeChoices& choices, std::span<const Quality> qualities) {
     if (qualities.empty()) require_drawn(backend_for(scene, choices, {}), {}, scene.fields());  // says why there is none
-    for (const Quality& quality : qualities) require_drawn(backend_for(scene, choices, quality), quality, scene.fields());
+    for (const Quality& quality : qualities) {
+        require_drawn(backend_for(scene, choices, quality), quality, scene.fields());
+        if (!knows_cuts(scene, quality)) {
+            throw Error({ErrorKind::option, "--method", "one of light per pixel for a scene with " + describe(planned_cuts(scene.cuts)),
+                         to_string(quality.method), "use integral, exact or a table"});
+        }
+    }
 }
 
 std::vector<GridSampling> choose_samplings(const TradeChoices& choices) {
@@ -151,7 +160,7 @@ std::vector<TradeWay> tetrahedral_ways(const SceneOptions& options, const Loaded
 TradeSubject grid_subject(const SceneOptions& options, const LoadedScene& loaded, const TradeChoices& choices,
                           std::span<const Quality> qualities, const Camera& camera, ImageSize size) {
     const GridScene& scene = *loaded.grid;
-    const auto reference = std::make_shared<const GridReference>(scene.grid, scene.transfer, scene.surfaces);
+    const auto reference = std::make_shared<const GridReference>(scene);
     const GridDimensions n = scene.grid->dimensions();
     TradeSubject subject{{}, judge_by(*reference, camera, size),
                          "a grid of " + std::to_string(n.ni) + "x" + std::to_string(n.nj) + "x" + std::to_string(n.nk) + " points", {reference}};
@@ -161,6 +170,7 @@ TradeSubject grid_subject(const SceneOptions& options, const LoadedScene& loaded
         for (const GridQuality& quality : chosen) {
             if (std::any_of(backends.begin(), backends.end(), [&](Backend b) { return draws_grid(b, scene, quality); })) continue;
             require_grid_drawn(backends.back(), quality, grid_shading(scene));  // says why it cannot be drawn
+            require_grid_cut(quality, ray_cuts(scene));
         }
     }
     for (const Backend backend : backends) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "mesh/grid_gradient.hpp"
 
@@ -90,6 +91,10 @@ double scalar_at(const std::array<double, 8>& corners, const glm::dvec3& u) {
     return std::clamp(sum, low, high);
 }
 
+ViewRay view_ray(const ScreenTransform::Ray& ray, bool from_origin) {
+    return {ray.origin, ray.direction, from_origin ? 0.0 : -std::numeric_limits<double>::infinity()};
+}
+
 }  // namespace
 
 std::vector<GridCrossing> cells_along(const Grid& grid, const ScreenTransform::Ray& ray, bool from_origin) {
@@ -128,6 +133,7 @@ struct GridReference::Piece {
     std::vector<IsoCrossing> surfaces;  // along it
 
     double at(double t) const { return (1 - t) * crossing.enter + t * crossing.leave; }
+    double share(double place) const { return std::clamp((place - crossing.enter) / (crossing.leave - crossing.enter), 0.0, 1.0); }
 };
 
 std::vector<GridReference::Piece> GridReference::pieces_along(const ScreenTransform::Ray& ray, bool from_origin) const {
@@ -143,9 +149,51 @@ std::vector<GridReference::Piece> GridReference::pieces_along(const ScreenTransf
     return pieces;
 }
 
+// What is left of the pieces between two places on the ray.
+void GridReference::cut(std::vector<Piece>& pieces, double begin, double end) {
+    std::erase_if(pieces, [&](const Piece& p) { return !(begin < end && p.crossing.leave > begin && p.crossing.enter < end); });
+    for (Piece& piece : pieces) {
+        if (piece.crossing.enter >= begin && piece.crossing.leave <= end) continue;
+        const double x0 = piece.share(begin), x1 = piece.share(end);
+        std::erase_if(piece.surfaces, [&](const IsoCrossing& c) { return c.t < x0 || c.t > x1; });
+        for (IsoCrossing& c : piece.surfaces) c.t = x1 > x0 ? (c.t - x0) / (x1 - x0) : 0.0;
+        piece.scalar = piece.scalar.part(x0, x1);
+        piece.crossing.enter = std::max(piece.crossing.enter, begin);
+        piece.crossing.leave = std::min(piece.crossing.leave, end);
+    }
+}
+
+// The nearest slice in the window. In the plane between two cells that on the normal's side counts, of slices that are no caps else the other one.
+std::optional<SliceHit> GridReference::slice_hit(const ViewRay& ray, const RayWindow& window, std::span<const Piece> pieces) const {
+    std::optional<SliceHit> nearest;
+    if (!scene_.slices || pieces.empty()) return nearest;
+    const double extent = scene_.grid->bounds().diagonal() + glm::length(ray.origin);
+    for (const Slice& slice : scene_.slices->slices) {
+        const auto t = place_on_plane(slice.plane, glm::dvec3(0), ray, window);
+        if (!t || (nearest && !(*t < nearest->t))) continue;
+        const double rounding = rounding_along_ray(extent + std::abs(*t));
+        const bool onwards = glm::dot(unit_normal(slice.plane), ray.direction) > 0;
+        const Piece* best = nullptr;
+        bool on_its_side = false;
+        for (const Piece& piece : pieces) {
+            if (piece.crossing.enter - rounding > *t || piece.crossing.leave + rounding < *t) continue;
+            const bool there = onwards ? piece.crossing.leave > *t + rounding : piece.crossing.enter < *t - rounding;
+            if ((best && !(there && !on_its_side)) || (slice.cap && !there)) continue;
+            best = &piece;
+            on_its_side = there;
+        }
+        if (!best) continue;
+        const double scalar = best->scalar.at(best->share(*t));
+        if (SliceColors(*scene_.slices->colors).at(scalar)) nearest = {*t, scalar};
+    }
+    return nearest;
+}
+
 GridReference::GridReference(std::shared_ptr<const Grid> grid, std::shared_ptr<const TransferFunction> transfer,
                              std::shared_ptr<const SurfaceScene> surfaces)
-    : scene_{std::move(grid), std::move(transfer), std::move(surfaces)} {
+    : GridReference(GridScene{std::move(grid), std::move(transfer), std::move(surfaces)}) {}
+
+GridReference::GridReference(GridScene scene) : scene_(std::move(scene)) {
     validate(scene_);
     if (!has_lit_medium(scene_)) return;
     const GridUnits units = units_of(*scene_.grid);
@@ -154,7 +202,10 @@ GridReference::GridReference(std::shared_ptr<const Grid> grid, std::shared_ptr<c
 
 std::vector<GridSurfaceHit> GridReference::surfaces_along(const ScreenTransform::Ray& ray, bool from_origin) const {
     std::vector<GridSurfaceHit> hits;
-    for (const Piece& piece : pieces_along(ray, from_origin)) {
+    const RayWindow window = ray_window(scene_.clip.get(), nullptr, glm::dvec3(0), view_ray(ray, from_origin));
+    std::vector<Piece> pieces = pieces_along(ray, from_origin);
+    cut(pieces, window.begin, window.end);
+    for (const Piece& piece : pieces) {
         for (const IsoCrossing& c : piece.surfaces) {
             const double t = piece.at(c.t);
             hits.push_back({c.surface, t, c.rising, piece.crossing.cell, place_in_cell(scene_.grid->cell_bounds(piece.crossing.cell), ray, t)});
@@ -200,9 +251,15 @@ Light GridReference::reflected(const GridSurfaceHit& hit, const glm::dvec3& dire
 }
 
 Light GridReference::light(const ScreenTransform::Ray& ray, bool from_origin) const {
+    const ViewRay view = view_ray(ray, from_origin);
+    const RayWindow window = ray_window(scene_.clip.get(), scene_.bodies.get(), glm::dvec3(0), view);
+    std::vector<Piece> pieces = pieces_along(ray, from_origin);
+    const FieldEnd field = field_end(scene_.bodies.get(), scene_.slices.get(), view, window, slice_hit(view, window, pieces));
+    cut(pieces, window.begin, field.t);
+
     CubicLight light(*scene_.transfer);
     const bool lit = has_lit_medium(scene_);
-    for (const Piece& piece : pieces_along(ray, from_origin)) {
+    for (const Piece& piece : pieces) {
         if (light.opaque()) break;
         const double length = piece.crossing.leave - piece.crossing.enter;
         const ShareEnds ends = lit ? shares(piece.crossing, ray) : whole_share;
@@ -216,6 +273,7 @@ Light GridReference::light(const ScreenTransform::Ray& ray, bool from_origin) co
         }
         light.add(begin > 0 ? piece.scalar.part(begin, 1.0) : piece.scalar, (1 - begin) * length, ends.part(begin, 1.0));
     }
+    if (field.light) light.add(*field.light);
     return light.light();
 }
 

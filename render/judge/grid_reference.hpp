@@ -16,6 +16,8 @@
 // - Where the medium is lit, each cell sends a share of its light to the eye that is linear along the ray, between
 //   `lit_share` by these gradients where the ray enters and leaves it; perspective rays enter the cell of the eye there.
 //   That is the model, as it is of meshes: the same field on finer cells is lit a little differently, by second order.
+// - Clip regions, bodies and slices as ray_window.hpp says; a cell that is cut is one of the length that is left. The scalar of a slice is
+//   that of the cell which the ray meets there.
 //
 // Accuracy: 1e-10 absolute for colours within 0..1, besides what it changes to move the axes by 1e-15 times the grid's
 // size, its distance from the origin or the eye's distance. Tests: grid_reference_test.
@@ -23,6 +25,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +34,7 @@
 #include "project/camera.hpp"
 #include "render/judge/cubic_light.hpp"
 #include "render/grid_scene.hpp"
+#include "render/judge/ray_window.hpp"
 #include "render/judge/reference.hpp"
 
 namespace cellproj {
@@ -60,13 +64,14 @@ struct GridSurfaceHit {
 // Immutable: any number of threads may ask at once.
 class GridReference {
 public:
-    // Of a GridScene of these parts. Throws as `validate` of it.
+    // Throws as `validate` of the scene.
+    explicit GridReference(GridScene scene);
     GridReference(std::shared_ptr<const Grid> grid, std::shared_ptr<const TransferFunction> transfer,
                   std::shared_ptr<const SurfaceScene> surfaces = nullptr);
 
     Light light(const ScreenTransform::Ray& ray, bool from_origin) const;
 
-    // The isosurfaces that a ray meets, also behind opaque ones, front to back; and the gradient there that their shading
+    // The isosurfaces that a ray meets in what the clip region keeps, also behind opaque ones and bodies, front to back; and the gradient there that their shading
     // takes [scalar / mesh unit]: 0 where there is none, or unlit.
     std::vector<GridSurfaceHit> surfaces_along(const ScreenTransform::Ray& ray, bool from_origin) const;
     glm::dvec3 gradient_at(const GridSurfaceHit& hit) const;
@@ -81,6 +86,8 @@ public:
 private:
     struct Piece;
     std::vector<Piece> pieces_along(const ScreenTransform::Ray& ray, bool from_origin) const;
+    static void cut(std::vector<Piece>& pieces, double begin, double end);
+    std::optional<SliceHit> slice_hit(const ViewRay& ray, const RayWindow& window, std::span<const Piece> pieces) const;
     Light reflected(const GridSurfaceHit& hit, const glm::dvec3& direction) const;
     glm::dvec3 gradient(const GridCell& cell, const glm::dvec3& u) const;
     ShareEnds shares(const GridCrossing& crossing, const ScreenTransform::Ray& ray) const;

@@ -58,8 +58,9 @@ std::optional<SliceHit> slice_hit(const Scene& scene, const glm::dvec3& middle, 
     std::optional<SliceHit> nearest;
     if (!scene.slices) return nearest;
     for (const Slice& slice : scene.slices->slices) {
-        const double t = PlaneOnRay(slice.plane, middle, ray).root();
-        if (!std::isfinite(t) || !(t > ray.start) || !(t >= window.begin && t <= window.end) || (nearest && !(t < nearest->t))) continue;
+        const auto place = place_on_plane(slice.plane, middle, ray, window);
+        if (!place || (nearest && !(*place < nearest->t))) continue;
+        const double t = *place;
         const RaySegment* best = nullptr;
         Met how = Met::not_at_all;
         for (const RaySegment& segment : along) {
@@ -76,22 +77,35 @@ std::optional<SliceHit> slice_hit(const Scene& scene, const glm::dvec3& middle, 
     return nearest;
 }
 
-RayWindow ray_window(const Scene& scene, const glm::dvec3& middle, const ViewRay& ray) {
+std::optional<double> place_on_plane(const HalfSpace& plane, const glm::dvec3& middle, const ViewRay& ray, const RayWindow& window) {
+    const double t = PlaneOnRay(plane, middle, ray).root();
+    if (!std::isfinite(t) || !(t > ray.start) || !(t >= window.begin && t <= window.end)) return std::nullopt;
+    return t;
+}
+
+FieldEnd field_end(const BodyScene* bodies, const SliceScene* slices, const ViewRay& ray, const RayWindow& window, const std::optional<SliceHit>& slice) {
+    const std::optional<BodyHit>& body = window.body;
+    if (slice && !(body && body->t <= slice->t)) return {slice->t, layer(*SliceColors(*slices->colors).at(slice->scalar), 1.0)};
+    if (!body) return {window.end, std::nullopt};
+    return {std::min(body->t, window.end), layer(shade(bodies->lighting, body->body->color, body->normal, -ray.direction), 1.0)};
+}
+
+RayWindow ray_window(const ClipRegion* clip, const BodyScene* bodies, const glm::dvec3& middle, const ViewRay& ray) {
     RayWindow window{ray.start, std::numeric_limits<double>::infinity(), std::nullopt};
     const auto nothing = [&] {
         window.begin = std::numeric_limits<double>::infinity();
         window.end = -window.begin;
     };
-    for (const HalfSpace& half_space : scene.clip ? scene.clip->half_spaces : std::vector<HalfSpace>{}) {
+    for (const HalfSpace& half_space : clip ? clip->half_spaces : std::vector<HalfSpace>{}) {
         const PlaneOnRay plane(half_space, middle, ray);
         if (plane.speed > 0) window.begin = std::max(window.begin, plane.root());
         if (plane.speed < 0) window.end = std::min(window.end, plane.root());
         if (plane.speed == 0 && plane.ahead < 0) nothing();
     }
-    if (!scene.bodies) return window;
+    if (!bodies) return window;
     const RayFrame frame(ray);
     std::vector<FramePoint> places;
-    for (const Body& body : scene.bodies->bodies) {
+    for (const Body& body : bodies->bodies) {
         places.clear();
         for (const glm::dvec3& point : body.points) places.push_back(frame.see(point - middle));
         for (const auto& triangle : body.triangles) {

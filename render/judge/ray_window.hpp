@@ -12,6 +12,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "classify/segment_integral.hpp"
 #include "render/judge/ray_index.hpp"
 #include "render/judge/ray_surfaces.hpp"
 #include "render/scene.hpp"
@@ -34,17 +35,25 @@ struct SliceHit {
 struct RayWindow {
     double begin, end;            // of what the clip region keeps [t]; begin > end: nothing
     std::optional<BodyHit> body;  // from the ray's start on, clipped or not
-
-    // Of the field: from `begin` to here.
-    double end_of_field() const { return body && body->t < end ? body->t : end; }
 };
+
+// `middle`: what the ray is relative to (RayIndex::middle; 0 where it is not). Null: none. O(#planes + #triangles).
+RayWindow ray_window(const ClipRegion* clip, const BodyScene* bodies, const glm::dvec3& middle, const ViewRay& ray);
+
+// Where the ray meets a plane in the window, behind its start; nothing for a ray along it.
+std::optional<double> place_on_plane(const HalfSpace& plane, const glm::dvec3& middle, const ViewRay& ray, const RayWindow& window);
 
 // The nearest slice that the ray meets in the window: not by the triangles that renderers draw (SliceScene::cuts), but by the cells along the
 // ray, of which that one counts which the plane cuts (mesh/plane_cut.hpp). `rounding`: of places along the ray [mesh units].
 std::optional<SliceHit> slice_hit(const Scene& scene, const glm::dvec3& middle, const ViewRay& ray, const RayWindow& window,
                                   std::span<const RaySegment> along, double rounding);
 
-// `middle`: what the ray is relative to (RayIndex::middle). O(#planes + #triangles).
-RayWindow ray_window(const Scene& scene, const glm::dvec3& middle, const ViewRay& ray);
+// Where the field ends that the ray sees from the window's begin on, and the light of the body or the slice that hides the rest. Where both are at
+// one place, the body is seen.
+struct FieldEnd {
+    double t;
+    std::optional<Light> light;
+};
+FieldEnd field_end(const BodyScene* bodies, const SliceScene* slices, const ViewRay& ray, const RayWindow& window, const std::optional<SliceHit>& slice);
 
 }  // namespace cellproj

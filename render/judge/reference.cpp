@@ -64,7 +64,7 @@ Reference::Reference(Scene scene, std::shared_ptr<const RayIndex> index) : scene
 
 std::vector<SurfaceHit> Reference::surfaces_along(const ViewRay& ray) const {
     if (!scene_.surfaces) return {};
-    const RayWindow window = ray_window(scene_, index_->middle(), ray);
+    const RayWindow window = ray_window(scene_.clip.get(), scene_.bodies.get(), index_->middle(), ray);
     auto hits = surface_hits(scene_.surfaces->isosurfaces, ray_segments(scene_, index_->cells_along(ray)), rounding_);
     std::erase_if(hits, [&](const SurfaceHit& hit) { return hit.t < window.begin || hit.t > window.end; });
     return hits;
@@ -94,10 +94,6 @@ Light Reference::reflected(const SurfaceHit& hit, const ViewRay& ray) const {
     return layer(shade(surfaces.lighting, color, -gradient_at(hit), -ray.direction), surface.opacity);
 }
 
-Light Reference::reflected(const BodyHit& hit, const ViewRay& ray) const {
-    return layer(shade(scene_.bodies->lighting, hit.body->color, hit.normal, -ray.direction), 1.0);
-}
-
 // What the medium of a cell sends to the eye where the ray enters and leaves it.
 ShareEnds Reference::shares(const RaySegment& segment, const ViewRay& ray) const {
     const auto share = [&](const std::array<double, 4>& weights) {
@@ -108,11 +104,10 @@ ShareEnds Reference::shares(const RaySegment& segment, const ViewRay& ray) const
 }
 
 Light Reference::light(const ViewRay& ray) const {
-    const RayWindow window = ray_window(scene_, index_->middle(), ray);
+    const RayWindow window = ray_window(scene_.clip.get(), scene_.bodies.get(), index_->middle(), ray);
     const std::vector<RaySegment> along = ray_segments(scene_, index_->cells_along(ray));
     const std::optional<SliceHit> slice = slice_hit(scene_, index_->middle(), ray, window, along, rounding_);
-    const bool slice_first = slice && !(window.body && window.body->t <= slice->t);
-    const double window_end = slice_first ? slice->t : window.end_of_field();
+    const FieldEnd field = field_end(scene_.bodies.get(), scene_.slices.get(), ray, window, slice);
     const std::vector<SurfaceHit> hits =
         scene_.surfaces ? surface_hits(scene_.surfaces->isosurfaces, along, rounding_) : std::vector<SurfaceHit>{};
     std::vector<double> bounds;
@@ -122,10 +117,10 @@ Light Reference::light(const ViewRay& ray) const {
     for (const SurfaceHit& hit : hits)
         bounds.push_back(hit.t);
     std::sort(bounds.begin(), bounds.end());
-    for (const double cut : {window.begin, window_end})
+    for (const double cut : {window.begin, field.t})
         if (!bounds.empty() && bounds.front() < cut && cut < bounds.back()) bounds.insert(std::ranges::upper_bound(bounds, cut), cut);
     bounds.erase(std::unique(bounds.begin(), bounds.end()), bounds.end());
-    std::erase_if(bounds, [&](double t) { return t < window.begin || t > window_end; });
+    std::erase_if(bounds, [&](double t) { return t < window.begin || t > field.t; });
 
     // Between two neighbouring bounds the same segments are there, and no surface.
     RayLight light(*scene_.transfer);
@@ -157,8 +152,7 @@ Light Reference::light(const ViewRay& ray) const {
         }
         light.add(media, opacity, end - begin, shares_here);
     }
-    if (slice_first) light.add(layer(*SliceColors(*scene_.slices->colors).at(slice->scalar), 1.0));
-    else if (window.body) light.add(reflected(*window.body, ray));
+    if (field.light) light.add(*field.light);
     return light.light();
 }
 

@@ -71,7 +71,6 @@ public:
 
 private:
     Light reflected(const SurfaceHit& hit, const ViewRay& ray) const;
-    Light reflected(const BodyHit& hit, const ViewRay& ray) const;
     glm::dvec3 gradient(CellId cell, const std::array<double, 4>& weights) const;
     ShareEnds shares(const RaySegment& segment, const ViewRay& ray) const;
 
