@@ -18,6 +18,7 @@ extern const std::string grid_place_vert;   // needs grid_cell_vert or grid_lit_
 extern const std::string grid_cell_vert;    // behind grid_place_vert; needs a prepare_cell behind it
 extern const std::string grid_lit_vert;     // behind grid_place_vert; needs light_glsl, a prepare_cell and a light_of_segment behind it
 extern const std::string grid_lit_frag;
+extern const std::string grid_open_vert, grid_open_frag;  // grid_closed_tiles.hpp
 extern const std::string grid_rays_frag;    // needs grid_cell_frag or grid_slab_frag behind it
 extern const std::string grid_slab_vert;
 extern const std::string grid_slab_frag;    // as grid_cell_frag
