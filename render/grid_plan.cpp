@@ -67,14 +67,16 @@ Decision surfaces(const GridScene& scene, const GridQuality& quality) {
     return {"surfaces", count + ", by exact roots", "rays are cut where the trilinear scalar passes their values"};
 }
 
-Decision gradients(const GridScene& scene) {
-    if (!has_surfaces(scene)) return {"gradients", "none", "nothing is lit"};
+Decision gradients(const GridScene& scene, const GridFacts& facts) {
+    const bool medium = facts.medium && has_lit_medium(scene);
+    if (!has_surfaces(scene) && !medium) return {"gradients", "none", "nothing is lit"};
+    const std::string of_medium = medium ? "; the medium is lit by them" : "";
     switch (scene.surfaces->shading) {
         case Shading::unlit: return {"gradients", "none", "isosurfaces are unlit"};
-        case Shading::flat: return {"gradients", "of the trilinear scalar in the cell", "flat shading"};
+        case Shading::flat: return {"gradients", "of the trilinear scalar in the cell", "flat shading" + of_medium};
         case Shading::smooth: break;
     }
-    return {"gradients", "of all points", "smooth shading: central differences, trilinear in between"};
+    return {"gradients", "of all points", "smooth shading: central differences, trilinear in between" + of_medium};
 }
 
 }  // namespace
@@ -91,7 +93,7 @@ std::optional<float> hiding_opacity(const TransferFunction& transfer, const Surf
 }
 
 std::vector<Decision> plan_of(const GridScene& scene, const GridQuality& quality, const GridFacts& facts) {
-    return {cells(quality, facts), order(quality, facts), segments(scene, quality, facts), surfaces(scene, quality), gradients(scene),
+    return {cells(quality, facts), order(quality, facts), segments(scene, quality, facts), surfaces(scene, quality), gradients(scene, facts),
             decide_rays(ray_cuts(scene))};
 }
 

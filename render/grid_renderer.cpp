@@ -10,8 +10,8 @@
 
 namespace cellproj {
 
-void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfaces) {
-    if (backend != Backend::cpu) return gl::require_grid_drawn(quality, surfaces);
+void require_grid_drawn(Backend backend, const GridQuality& quality, const GridShading& shading) {
+    if (backend != Backend::cpu) return gl::require_grid_drawn(quality, shading);
     const auto refuse = [](const char* option, const char* expected, const std::string& found, const char* advice) {
         throw Error({ErrorKind::option, option, expected, found, advice});
     };
@@ -21,8 +21,8 @@ void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfac
     if (quality.target != TargetFormat::rgba32f) refuse("--target", "rgba32f for a regular grid", to_string(quality.target), as_tets);
     if (quality.sampling.cut != GridSampling::Cut::cells)
         refuse("--sampling", "cells for a regular grid on the CPU", to_string(quality.sampling), "use the OpenGL backend (--backend gl)");
-    if (surfaces && !takes_surfaces(quality.method))
-        refuse("--method", "a method of light per pixel, blended once, for isosurfaces", to_string(quality.method), "leave it out");
+    if ((shading.isosurfaces || shading.lit_medium) && !takes_surfaces(quality.method))
+        refuse("--method", "a method of light per pixel, blended once, for isosurfaces and lit media", to_string(quality.method), "leave it out");
 }
 
 void require_grid_cut(const GridQuality& quality, const RayCuts& cuts) {

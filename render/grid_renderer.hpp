@@ -40,7 +40,7 @@ public:
 };
 
 // Throws Error (option), which says what to do instead, when a backend does not draw grids so; renderers do it, too.
-void require_grid_drawn(Backend backend, const GridQuality& quality, bool surfaces);
+void require_grid_drawn(Backend backend, const GridQuality& quality, const GridShading& shading);
 
 // Likewise for grids whose rays are cut: only the light of a piece of a ray through a cell can be, not that of slabs or at vertices.
 void require_grid_cut(const GridQuality& quality, const RayCuts& cuts);

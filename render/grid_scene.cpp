@@ -12,6 +12,10 @@ namespace cellproj {
 
 bool has_surfaces(const GridScene& scene) { return scene.surfaces && !scene.surfaces->isosurfaces.surfaces().empty(); }
 
+bool has_lit_medium(const GridScene& scene) {
+    return scene.surfaces && scene.surfaces->lit_medium && scene.surfaces->shading != Shading::unlit;
+}
+
 RayCuts ray_cuts(const GridScene& scene) { return count_cuts(scene.clip.get(), scene.bodies.get(), scene.slices.get()); }
 
 void validate(const GridScene& scene) {
@@ -20,14 +24,12 @@ void validate(const GridScene& scene) {
     validate(grid, "grid");
     if (!grid.blanked.empty() && std::find(grid.blanked.begin(), grid.blanked.end(), 0) == grid.blanked.end())
         throw Error({ErrorKind::data, "grid", "a cell that is not blanked", "none", "leave cells to draw"});
-    if (scene.surfaces && scene.surfaces->lit_medium)
-        throw Error({ErrorKind::option, "light by the gradient", "tetrahedra", "a regular grid", "draw it as tetrahedra (--as tets)"});
     if (scene.clip) validate(*scene.clip, "clip region");
     if (scene.bodies) validate(*scene.bodies);
     if (scene.slices) validate(*scene.slices);
-    if (!has_surfaces(scene)) return;
+    if (!has_surfaces(scene) && !has_lit_medium(scene)) return;
     if (grid.location == FieldLocation::cells) {
-        throw Error({ErrorKind::option, "isosurfaces", "a field on points", "one on cells, constant in each",
+        throw Error({ErrorKind::option, has_surfaces(scene) ? "isosurfaces" : "light by the gradient", "a field on points", "one on cells, constant in each",
                      "draw it as tetrahedra and carry it to the points first (--as tets --cell-values averaged)"});
     }
     validate(scene.surfaces->lighting, "lights");

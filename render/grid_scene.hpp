@@ -17,8 +17,9 @@ namespace cellproj {
 struct GridScene {
     std::shared_ptr<const Grid> grid;
     std::shared_ptr<const TransferFunction> transfer;
-    // Null: none. They lie in the medium of `transfer`. Flat shading takes the gradient of the trilinear scalar, smooth that of the points,
-    // trilinear in between (mesh/grid_gradient.hpp).
+    // Null: none, and nothing is lit. They lie in the medium of `transfer`. Flat shading takes the gradient of the trilinear scalar, inside the
+    // cell at hand, smooth that of the points, trilinear in between (mesh/grid_gradient.hpp). A lit medium takes it where a ray enters
+    // a cell, or begins in it (camera inside, clipping), and where it leaves or ends.
     std::shared_ptr<const SurfaceScene> surfaces = nullptr;
     std::shared_ptr<const ClipRegion> clip = nullptr;     // as of a mesh (scene.hpp)
     std::shared_ptr<const BodyScene> bodies = nullptr;
@@ -26,11 +27,18 @@ struct GridScene {
 };
 
 bool has_surfaces(const GridScene& scene);
+bool has_lit_medium(const GridScene& scene);
 RayCuts ray_cuts(const GridScene& scene);
 
+// What of `GridScene::surfaces` not every way of drawing grids knows.
+struct GridShading {
+    bool isosurfaces = false, lit_medium = false;
+};
+inline GridShading grid_shading(const GridScene& scene) { return {has_surfaces(scene), has_lit_medium(scene)}; }
+
 // Throws Error (data) when the grid is not sound (mesh/grid.hpp) or all its cells are blanked, Error (option) for
-// isosurfaces of a field on cells, which has none, for lights out of range and for clip regions, bodies and slices as
-// their own `validate`.
+// isosurfaces of a field on cells, which has none, or a medium lit by its gradient, for lights out of range and for clip
+// regions, bodies and slices as their own `validate`.
 void validate(const GridScene& scene);
 
 // What a renderer counts in, so that float32 serves grids and fields of any scale: as SceneUnits of a mesh

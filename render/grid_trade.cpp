@@ -39,7 +39,7 @@ std::string to_string(const GridQuality& quality) {
 
 bool draws_grid(Backend backend, const GridScene& scene, const GridQuality& quality) {
     try {
-        require_grid_drawn(backend, quality, has_surfaces(scene));
+        require_grid_drawn(backend, quality, grid_shading(scene));
         require_grid_cut(quality, ray_cuts(scene));
         if (quality.sampling.cut != Cut::cells) gl::require_sliced(*scene.grid, quality.sampling);
         return true;

@@ -212,7 +212,7 @@ TEST(GlSlabs, RefuseWhatSlicesCannotShow) {
     refused(blanked);
     refused(on_cells);
     refused(unit_cube(4, linear), "homogeneous:vertices");
-    EXPECT_THROW(require_grid_drawn(Backend::cpu, {.sampling = parse_grid_sampling("object:8")}, false), Error);
+    EXPECT_THROW(require_grid_drawn(Backend::cpu, {.sampling = parse_grid_sampling("object:8")}, {}), Error);
 }
 
 // Tables are those of the slabs at hand.

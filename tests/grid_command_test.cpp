@@ -103,6 +103,25 @@ TEST_F(GridCommand, IsosurfacesAreThoseOfTheGrid) {
     EXPECT_EQ(drawn_as(std::string(voxels) + " --iso 20 --as tets"), "tetrahedra");
 }
 
+TEST_F(GridCommand, ItsVolumeIsLit) {
+    for (const char* option : {"", "--shading flat --light 1,0,0", "--iso 20:red:0.5", "--clip 1,1,1:0,0,1 --method exact:1e-4 --as grid"})
+        EXPECT_EQ(drawn_as(std::string(voxels) + " --shade-volume " + option), "grid") << option;
+    EXPECT_NE(content("p.png").find("--shade-volume --shading smooth"), std::string::npos);
+    const Outcome explained = run(std::string(voxels) + " --shade-volume --explain");
+    for (const char* words : {"of all points", "the medium is lit by them", "rays walk"})
+        EXPECT_NE(explained.text.find(words), std::string::npos) << explained.text;
+    EXPECT_EQ(run_program(folder_, std::string("render --size 36x30 -o p.png --stats s.json --shade-volume --max-error 0.01 ") + voxels).code, 0);
+    EXPECT_LE(nlohmann::json::parse(content("s.json")).at("pictures").at(0).at("error"), 0.01);
+    EXPECT_EQ(run_program(folder_, std::string("trade --shade-volume --size 30x30 --rounds 1 --json t.json --backend cpu --method integral ") + voxels).code, 0);
+    for (const auto& row : nlohmann::json::parse(content("t.json")).at("methods"))  // as it is, and as tetrahedra: the field is linear
+        EXPECT_LT(row.at("error").at("color").at("maximum"), 0.01) << row;
+    EXPECT_EQ(drawn_as(std::string(voxels) + " --shade-volume --backend gl"), "tetrahedra");
+    std::filesystem::remove(folder_ / "p.png");
+    expect_refused(std::string(voxels) + " --shade-volume --backend gl --as grid", {"--shade-volume", "OpenGL", "--backend cpu"});
+    expect_refused(std::string(voxels) + " --shade-volume --sampling object:8", {"--shade-volume", "OpenGL"});
+    expect_refused(std::string(voxels) + " --shade-volume --as grid --method average:half", {"--method", "lit media"});
+}
+
 TEST_F(GridCommand, OpenGlDrawsCellsAndSlabs) {
     for (const char* option : {"--backend gl", "--backend gl --method homogeneous:vertices --target rgba16f", "--sampling object:8",
                                "--sampling view:9:post:x2 --method preint2d --as grid"})

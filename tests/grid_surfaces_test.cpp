@@ -326,7 +326,7 @@ TEST(CpuGridSurfaces, WhatTheyCannotBeIsRefused) {
     const Camera camera = view_of_unit_cube(Projection::parallel);
     GridScene scene = scene_of(unit_cube(3, scenes::waves), ramp(), surfaces_of({{.value = 0.5}}));
     EXPECT_NO_THROW(cpu().render(scene, camera, small));
-    EXPECT_THROW(cpu().render(scene, camera, small, by("linear:8:half")), Error);
+    EXPECT_THROW(cpu().render(scene, camera, small, by("average:half")), Error);
     Grid cells = *scene.grid;
     cells.location = FieldLocation::cells;
     cells.values.resize(cells.cell_count());
@@ -489,7 +489,7 @@ TEST(GlGridSurfaces, WhatSlabsCannotShowIsRefused) {
     const GridScene scene = scene_of(unit_cube(3, scenes::waves), ramp(), surfaces_of({{.value = 0.5}}));
     EXPECT_NO_THROW(gl().render(scene, camera, small, slabs("object:4")));
     for (const char* sampling : {"object:4:pre", "view:4:post"}) EXPECT_THROW(gl().render(scene, camera, small, slabs(sampling)), Error) << sampling;
-    EXPECT_THROW(gl().render(scene, camera, small, slabs("object:4", "linear:8:half")), Error);
+    EXPECT_THROW(gl().render(scene, camera, small, slabs("object:4", "average:half")), Error);
 }
 
 }  // namespace

@@ -94,11 +94,11 @@ TEST_F(HierarchyCommand, RenderDrawsThePiecesAsTheyAre) {
         EXPECT_NE(outcome.text.find("2 in 2 levels"), std::string::npos) << outcome.text;
     }
     // The rest is drawn as tetrahedra, unless they are ruled out.
-    for (const char* options : {"two.json --backend gl", "two.json --iso 4", "two.json --as tets", "amr.vth --order mpvo"}) {
+    for (const char* options : {"two.json --backend gl", "two.json --iso 4", "two.json --shade-volume", "two.json --as tets", "amr.vth --order mpvo"}) {
         ASSERT_EQ(render(options).code, 0) << options;
         EXPECT_EQ(picture().at("drawn_as"), "tetrahedra") << options;
     }
-    for (const char* options : {"--backend gl", "--iso 4"})
+    for (const char* options : {"--backend gl", "--iso 4", "--shade-volume"})
         expect_refused(std::string("render two.json -o q.png --as grid ") + options, {"hierarchy of grids", "--as tets"});
     expect_refused("render two.json -o q.png --sampling object:9", {"--sampling", "hierarchy of grids"});
 }

@@ -21,7 +21,6 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
     if (options.tetrahedralize) refuse("--tetrahedralize", "a file that holds a regular grid", "a surface");
     if (!options.opacity_field.empty()) refuse("--opacity-field", "colour and opacity from one field for a regular grid", "another field");
     if (options.cell_values == "averaged") refuse("--cell-values", "constant for a regular grid", "averaged");
-    if (options.iso.shade_volume) refuse("--shade-volume", "a regular grid's volume as it is, not lit", "--shade-volume");
     if (options.iso.any() && wishes.quality.surfaces.kind != SurfaceMethodKind::exact)
         refuse("--iso-method", "exact for isosurfaces of a regular grid", "a table");
     if (wishes.named_order) refuse("--order", "auto for a regular grid, whose cells need no sorting", "another order");
@@ -29,7 +28,7 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
     // The judge of grids knows neither clip regions nor bodies and slices.
     if (wishes.measured_method && !text_of(options.cuts).empty()) refuse("--max-error", "--method for a regular grid that is cut, such as exact:1e-3", "--max-error");
     const GridQuality quality{wishes.quality.method, wishes.quality.target, wishes.sampling};
-    require_grid_drawn(wishes.backend, quality, options.iso.any());
+    require_grid_drawn(wishes.backend, quality, {options.iso.any(), options.iso.shade_volume});
     require_grid_cut(quality, planned_cuts(options.cuts));
 }
 
@@ -74,8 +73,9 @@ void require_hierarchy_drawn(const SceneOptions& options, Backend backend, const
     if (quality.sampling.cut != GridSampling::Cut::cells) refuse("--sampling", "cells for a hierarchy of grids", to_string(quality.sampling));
     if (backend != Backend::cpu) refuse("--backend", "cpu for a hierarchy of grids", to_string(backend));
     if (options.iso.any()) refuse("--iso", "no isosurfaces for a hierarchy of grids", "some");
+    if (options.iso.shade_volume) refuse("--shade-volume", "the volume of a hierarchy of grids as it is, not lit", "--shade-volume");
     if (const std::string cuts = text_of(options.cuts); !cuts.empty()) refuse(cuts.c_str(), "no clipping planes, slices and bodies for a hierarchy of grids", "some");
-    require_grid_drawn(backend, quality, false);
+    require_grid_drawn(backend, quality, {});
 }
 
 }  // namespace cellproj::cli

@@ -82,10 +82,10 @@ DrawnAs drawn_as(const TradeCommandOptions& options) {
     return choose_drawn_as(options.scene, {Backend::cpu, {}, {}, false, false});
 }
 
-// A hierarchy of grids with isosurfaces as tetrahedra: its renderer knows none.
+// A hierarchy of grids with isosurfaces or lit as tetrahedra: its renderer knows neither.
 LoadedScene load(const TradeCommandOptions& options, DrawnAs drawn) {
     LoadedScene loaded = load_scene(options.scene, drawn);
-    if (!loaded.hierarchy || !options.scene.iso.any()) return loaded;
+    if (!loaded.hierarchy || !options.scene.iso.any_shaded()) return loaded;
     if (drawn == DrawnAs::grid) require_hierarchy_drawn(options.scene, Backend::cpu, {});
     return load_scene(options.scene, DrawnAs::tets);
 }

@@ -160,7 +160,7 @@ TradeSubject grid_subject(const SceneOptions& options, const LoadedScene& loaded
     if (!choices.methods.empty() || !choices.samplings.empty()) {  // each of them was asked for by its name
         for (const GridQuality& quality : chosen) {
             if (std::any_of(backends.begin(), backends.end(), [&](Backend b) { return draws_grid(b, scene, quality); })) continue;
-            require_grid_drawn(backends.back(), quality, has_surfaces(scene));  // says why it cannot be drawn
+            require_grid_drawn(backends.back(), quality, grid_shading(scene));  // says why it cannot be drawn
         }
     }
     for (const Backend backend : backends) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "classify/segment_method.hpp"
+#include "mesh/error.hpp"
 #include "render/cpu/backend_version.hpp"
 #include "render/cpu/classification.hpp"
 #include "render/cpu/grid_bend.hpp"
@@ -31,7 +32,7 @@ public:
     explicit CpuGridRenderer(int threads) : arena_(threads > 0 ? threads : oneapi::tbb::task_arena::automatic) {}
 
     void prepare(const GridScene& scene, const GridQuality& quality) override {
-        require_grid_drawn(Backend::cpu, quality, has_surfaces(scene));
+        require_grid_drawn(Backend::cpu, quality, grid_shading(scene));
         arena_.execute([&] { prepare_here(scene, quality); });
     }
 
@@ -39,21 +40,21 @@ public:
                  Statistics* statistics) override {
         validate(camera, "camera");
         validate(size, "size");
-        require_grid_drawn(Backend::cpu, quality, has_surfaces(scene));
+        require_grid_drawn(Backend::cpu, quality, grid_shading(scene));
         return arena_.execute([&] { return render_here(scene, camera, size, quality, statistics); });
     }
 
 private:
     void prepare_here(const GridScene& scene, const GridQuality& quality);
     Image render_here(const GridScene& scene, const Camera& camera, ImageSize size, const GridQuality& quality, Statistics* out);
-    void set_surfaces();
+    void set_surfaces(bool medium);
     std::size_t draw(Image& image, const ScreenTransform& transform, std::span<const DepthInterval> kept) const;
 
     oneapi::tbb::task_arena arena_;
     GridScene scene_;
     std::optional<GridVolume> volume_;              // of scene_.grid
     std::vector<glm::vec3> gradients_;              // at its points, where shading wants them
-    GridSurfaces surfaces_;                         // of scene_; count 0: none
+    GridSurfaces surfaces_;                         // of scene_
     Method method_;
     std::optional<Classification> classification_;  // of method_ and scene_.transfer
     float bend_ = 0;
@@ -80,14 +81,15 @@ void CpuGridRenderer::prepare_here(const GridScene& scene, const GridQuality& qu
     classification_.reset();
     classification_.emplace(method_, transfer, volume_->mean_chord());
     volume_->set_light(transfer, has_surfaces(scene) ? kept_isovalues(scene.surfaces->isosurfaces, units) : std::vector<float>{});
-    set_surfaces();
-    surfaces_.medium = transfer.visible(0.0, 1.0);
+    set_surfaces(transfer.visible(0.0, 1.0));
     bend_ = bend_of(method_, transfer);
 }
 
-void CpuGridRenderer::set_surfaces() {
+void CpuGridRenderer::set_surfaces(bool medium) {
     surfaces_ = volume_->surfaces();
-    if (!has_surfaces(scene_)) return;
+    surfaces_.medium = medium;
+    surfaces_.lit_medium = medium && has_lit_medium(scene_);
+    if (!has_surfaces(scene_) && !surfaces_.lit_medium) return;
     const SurfaceScene& scene = *scene_.surfaces;
     for (const SurfaceMaterial& material : materials_of(scene.isosurfaces))
         for (const glm::vec3& color : {material.front, material.back})
@@ -95,6 +97,11 @@ void CpuGridRenderer::set_surfaces() {
     surfaces_.shading = scene.shading;
     surfaces_.lighting = kernel_lighting(scene.lighting);
     if (scene.shading != SurfaceShading::smooth) return;
+    // The kernels count their parts by 32 bits.
+    if (constexpr std::size_t most = std::numeric_limits<std::int32_t>::max() / 3; scene_.grid->values.size() > most) {
+        throw Error({ErrorKind::data, "grid", "at most " + std::to_string(most) + " points for smooth shading", std::to_string(scene_.grid->values.size()),
+                     "use flat shading (--shading flat), resample it, or cut a part out"});
+    }
     if (gradients_.empty()) gradients_ = kept_gradients(*scene_.grid, volume_->units());
     surfaces_.gradients = &gradients_[0].x;
 }
@@ -139,7 +146,7 @@ std::size_t CpuGridRenderer::draw(Image& image, const ScreenTransform& transform
     return draw_tiles(image, [&](const Tile& tile) {
         GridRays rays;
         volume_->find_rays(transform, tile.x, tile.y, tile.width, tile.height, kept, rays);
-        return draw_grid_tile(cells, surfaces_.count > 0 ? &surfaces_ : nullptr, rays, shading, bend_, tile);
+        return draw_grid_tile(cells, surfaces_.count > 0 || surfaces_.lit_medium ? &surfaces_ : nullptr, rays, shading, bend_, tile);
     });
 }
 

@@ -17,6 +17,7 @@
 #include "render/cpu/grid_segments-inl.hpp"
 #include "render/cpu/grid_walk-inl.hpp"
 #include "render/cpu/reflection-inl.hpp"
+#include "render/cpu/grid_medium_light-inl.hpp"
 #include "render/cpu/grid_surfaces-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

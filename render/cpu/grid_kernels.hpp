@@ -39,9 +39,9 @@ struct GridCells {
     const std::int32_t* empty = nullptr;    // null when every brick shows something
 };
 
-// The isosurfaces in a grid as rays read them (render/grid_surfaces.hpp).
+// The isosurfaces in a grid, and the light on them and the medium, as rays read them (render/grid_surfaces.hpp).
 struct GridSurfaces {
-    std::int32_t count = 0;              // > 0
+    std::int32_t count = 0;
     const float* values = nullptr;       // #count, ascending
     std::vector<float> materials;        // #count by 8: front colour, opacity; back colour, opacity
     SurfaceShading shading = SurfaceShading::unlit;
@@ -50,6 +50,7 @@ struct GridSurfaces {
     std::array<float, 3> per_length{};   // axis units in a length of 1
     const std::int32_t* crossed = nullptr;  // per brick of the first level: 1 where some surface crosses it
     bool medium = true;                  // whether there is light between them
+    bool lit_medium = false;             // which is lit
 };
 
 // The rays of a tile's pixels, row by row.
@@ -62,7 +63,7 @@ struct GridRays {
 };
 
 // Composites the grid along a tile's rays. Returns the number of segments.
-// `surfaces`: null without any; not of a grid that is constant per cell. `bend`: how far a cell's scalar may stay away from straight lines between the places where it is looked at; infinite:
+// `surfaces`: null without any and where nothing is lit; not of a grid that is constant per cell. `bend`: how far a cell's scalar may stay away from straight lines between the places where it is looked at; infinite:
 // one line from face to face.
 std::size_t draw_grid_tile(const GridCells& grid, const GridSurfaces* surfaces, const GridRays& rays, const Shading& shading, float bend,
                            const Tile& tile);

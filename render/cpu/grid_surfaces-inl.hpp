@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rays through a grid with isosurfaces: the walk of grid_walk-inl.hpp, cut at every place where the trilinear scalar passes an isovalue.
+// Rays through a grid with isosurfaces: the walk of grid_walk-inl.hpp, cut at every place where the trilinear scalar passes an isovalue. Media
+// that are lit go the same way, with and without surfaces in them.
 // Included once per instruction set, behind Highway; private to grid_kernels.cpp.
 //
 // A cell whose corners have one level (render/grid_surfaces.hpp) is crossed by no surface and is left as it is. In others the cubic along
@@ -48,6 +49,7 @@ public:
 
     SegmentChunk& chunk() { return chunk_; }
     GridHits& hits() { return hits_; }
+    ShareStep* shares() { return shares_; }  // of the chunk's steps
     bool full() const { return chunk_.count + static_cast<std::size_t>(most_parts) + 1 > SegmentChunk::most; }
 
     // The last step of the chunk ends at surfaces: the slot of its first lane.
@@ -61,6 +63,7 @@ public:
     // Puts all steps behind what was seen, and begins anew.
     HWY_NOINLINE void flush(D d, PacketLight<D>& seen) {
         if (surfaces_.medium) light_of_chunk(d, shading_, false, chunk_, crossing_);
+        if (surfaces_.lit_medium) light_medium(d, shares_, chunk_);
         shade_hits(d);
         for (std::size_t i = 0; i < chunk_.count; ++i) {
             if (surfaces_.medium) put_behind(d, chunk_.steps[i].light, seen);
@@ -73,7 +76,6 @@ public:
 
 private:
     void shade_hits(D d);
-    Direction<V> gradient_of(D d, std::size_t begin) const;
 
     const GridCells& grid_;
     const GridSurfaces& surfaces_;
@@ -81,42 +83,10 @@ private:
     SegmentChunk chunk_;
     CrossingSegments crossing_;
     GridHits hits_;
+    ShareStep shares_[SegmentChunk::most];
     alignas(64) float behind_[SegmentChunk::most][4][packet_lanes];  // of steps, channels, lanes
     bool behind_some_[SegmentChunk::most] = {};
 };
-
-// In the axes of the grid, at hits from number `begin` on.
-template <class D>
-HWY_INLINE Direction<hn::Vec<D>> SurfaceLight<D>::gradient_of(D d, std::size_t begin) const {
-    const DI di;
-    const VI corner = hn::Load(di, hits_.corner + begin);
-    const V one = hn::Set(d, 1.0F);
-    const V u[3] = {hn::Load(d, hits_.u[0] + begin), hn::Load(d, hits_.u[1] + begin), hn::Load(d, hits_.u[2] + begin)};
-    V sum[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    for (std::size_t c = 0; c < 8; ++c) {
-        std::int32_t offset = 0;
-        V share[3], sign[3];
-        for (std::size_t a = 0; a < 3; ++a) {
-            const bool high = (c >> a & 1U) != 0;
-            if (high) offset += grid_.axes[a].value_stride;
-            share[a] = high ? u[a] : hn::Sub(one, u[a]);
-            sign[a] = hn::Set(d, high ? 1.0F : -1.0F);
-        }
-        if (surfaces_.gradients) {
-            const V weight = hn::Mul(hn::Mul(share[0], share[1]), share[2]);
-            const VI at = hn::Mul(hn::Add(corner, hn::Set(di, offset)), hn::Set(di, 3));
-            for (std::size_t a = 0; a < 3; ++a) sum[a] = hn::MulAdd(weight, hn::GatherIndex(d, surfaces_.gradients + a, at), sum[a]);
-        } else {
-            const V value = hn::GatherIndex(d, grid_.values + offset, corner);
-            for (std::size_t a = 0; a < 3; ++a)
-                sum[a] = hn::MulAdd(hn::Mul(hn::Mul(sign[a], share[(a + 1) % 3]), share[(a + 2) % 3]), value, sum[a]);
-        }
-    }
-    if (!surfaces_.gradients)
-        for (std::size_t a = 0; a < 3; ++a)
-            sum[a] = hn::Mul(sum[a], hn::Mul(hn::Load(d, hits_.per_width[a] + begin), hn::Set(d, surfaces_.per_length[a])));
-    return {sum[0], sum[1], sum[2]};
-}
 
 template <class D>
 HWY_NOINLINE void SurfaceLight<D>::shade_hits(D d) {
@@ -130,11 +100,14 @@ HWY_NOINLINE void SurfaceLight<D>::shade_hits(D d) {
         const V one = hn::Set(d, 1.0F);
         V sum[3] = {one, one, one};
         if (surfaces_.shading != SurfaceShading::unlit) {
-            const auto towards = [&](std::size_t a)
-                                     HWY_ATTR { return hn::Mul(hn::Load(d, hits_.direction[a] + begin), hn::Set(d, -1.0F / surfaces_.per_length[a])); };
-            hn::Mask<D> some;
-            const Direction<V> eye = unit(d, Direction<V>{towards(0), towards(1), towards(2)}, some);
-            reflect(d, surfaces_.lighting, gradient_of(d, begin), eye, sum);
+            V u[3], per_width[3], along[3];
+            for (std::size_t a = 0; a < 3; ++a) {
+                u[a] = hn::Load(d, hits_.u[a] + begin);
+                per_width[a] = hn::Load(d, hits_.per_width[a] + begin);
+                along[a] = hn::Load(d, hits_.direction[a] + begin);
+            }
+            const Direction<V> gradient = gradient_in_cell(d, grid_, surfaces_, hn::Load(di, hits_.corner + begin), u, per_width);
+            reflect(d, surfaces_.lighting, gradient, to_eye(d, surfaces_, along), sum);
         }
         const VI material = hn::Load(di, hits_.material + begin);
         const auto of_material = [&](std::size_t k) HWY_ATTR { return hn::GatherIndex(d, surfaces_.materials.data() + k, material); };
@@ -150,30 +123,31 @@ HWY_NOINLINE void SurfaceLight<D>::shade_hits(D d) {
 }
 
 template <bool uniform, class D>
-class SurfaceWalk : public GridWalk<uniform, D> {
-    using Base = GridWalk<uniform, D>;
+class SurfaceWalk : public LitWalk<uniform, D> {
+    using Base = LitWalk<uniform, D>;
     using typename Base::Ahead;
     using typename Base::Corners;
     using typename Base::M;
     using typename Base::Polynomial;
     using typename Base::V;
     using typename Base::VI;
-    using Base::active_, Base::axes_, Base::d_, Base::di_, Base::grid_, Base::scalar_, Base::t_;
+    using Base::active_, Base::axes_, Base::d_, Base::di_, Base::grid_, Base::scalar_, Base::surfaces_, Base::t_;
 
 public:
     HWY_INLINE SurfaceWalk(D d, const GridCells& grid, const GridSurfaces& surfaces, const GridRays& rays, const std::int32_t* pixel, M some)
-        : Base(d, grid, rays, pixel, some), surfaces_(surfaces) {}
+        : Base(d, grid, surfaces, rays, pixel, some) {}
 
     // As GridWalk::step.
     HWY_INLINE void step(float bend, SurfaceLight<D>& light, PacketLight<D>& seen) {
         if (light.full()) light.flush(d_, seen);
         const Ahead ahead = this->look_ahead();
         const V next = this->template scalar_at_face<true>(ahead);
+        if (surfaces_.lit_medium) this->find_shares(ahead);
         M inside = active_;
         if (grid_.present) inside = hn::And(inside, hn::Gt(hn::GatherIndex(d_, grid_.present, this->cell_id_), hn::Zero(d_)));
-        const M near = hn::And(inside, in_crossed_brick());
+        const M near = surfaces_.count > 0 ? hn::And(inside, in_crossed_brick()) : hn::Lt(t_, hn::Zero(d_));
         if (hn::AllFalse(d_, near) || !cut_cell(bend, ahead, next, near, light, seen)) {
-            if (surfaces_.medium) push_whole(bend, ahead, next, light.chunk());
+            if (surfaces_.medium) push_whole(bend, ahead, next, light);
         }
         scalar_ = next;
         this->advance(ahead);
@@ -187,12 +161,15 @@ private:
         return hn::RebindMask(d_, hn::Gt(hn::GatherIndex(di_, surfaces_.crossed, brick), hn::Zero(di_)));
     }
 
-    HWY_INLINE void push_whole(float bend, const Ahead& ahead, V next, SegmentChunk& chunk) const {
+    HWY_INLINE void push_whole(float bend, const Ahead& ahead, V next, SurfaceLight<D>& light) const {
+        SegmentChunk& chunk = light.chunk();
+        const std::size_t first = chunk.count;
         if (bend < std::numeric_limits<float>::max()) {
             this->push_lines(scalar_, next, this->polynomial_to(this->corners(), next, ahead.leave), ahead.length, bend, chunk);
         } else {
             this->push(scalar_, next, ahead.length, chunk);
         }
+        if (surfaces_.lit_medium) this->put_shares(chunk, first, hn::Zero(d_), hn::Set(d_, 1.0F), light.shares());
     }
 
     // How many isovalues a scalar is not below. Few are counted, more are searched.
@@ -259,7 +236,12 @@ private:
     }
 
     // From x0 to x1 of the way through the cell; both 0 and 1 for whole cells.
-    HWY_INLINE void push_part(float bend, const Polynomial& p, V x0, V x1, V s0, V s1, V length, SegmentChunk& chunk) const {
+    HWY_INLINE void push_part(float bend, const Polynomial& p, V x0, V x1, V s0, V s1, V length, SurfaceLight<D>& light) const {
+        const std::size_t first = light.chunk().count;
+        push_lines_of_part(bend, p, x0, x1, s0, s1, length, light.chunk());
+        if (surfaces_.lit_medium) this->put_shares(light.chunk(), first, x0, x1, light.shares());
+    }
+    HWY_INLINE void push_lines_of_part(float bend, const Polynomial& p, V x0, V x1, V s0, V s1, V length, SegmentChunk& chunk) const {
         const V share = hn::Sub(x1, x0), part = hn::Mul(length, share);
         if (!(bend < std::numeric_limits<float>::max())) return this->push(s0, s1, part, chunk);
         const V three = hn::Set(d_, 3.0F), at_x0 = hn::Mul(p.cube, x0);
@@ -277,11 +259,9 @@ private:
         hn::CompressStore(this->value_id_, integers, di_, hits.corner + to);
         const V t = hn::MulAdd(x, hn::Sub(ahead.leave, t_), t_);
         for (std::size_t a = 0; a < 3; ++a) {
-            V per_width = hn::Set(d_, 1.0F);
-            if constexpr (!uniform) per_width = hn::GatherIndex(d_, grid_.axes[a].per_width, hn::ConvertTo(di_, axes_[a].cell));
             hn::CompressStore(this->in_unit(this->fraction(a, t)), some, d_, hits.u[a] + to);
             hn::CompressStore(axes_[a].direction, some, d_, hits.direction[a] + to);
-            hn::CompressStore(per_width, some, d_, hits.per_width[a] + to);
+            hn::CompressStore(this->per_width(a), some, d_, hits.per_width[a] + to);
         }
     }
 
@@ -311,7 +291,7 @@ private:
                 const V v = hn::GatherIndex(d_, surfaces_.values, surface);
                 const V at = hn::IfThenElse(meets, root_of(p, v, hn::Max(x, begin), end, rising), x);
                 const V s_at = hn::IfThenElse(meets, v, s);
-                if (surfaces_.medium) push_part(bend, p, x, at, s, s_at, ahead.length, light.chunk());
+                if (surfaces_.medium) push_part(bend, p, x, at, s, s_at, ahead.length, light);
                 else this->push(s, s, hn::Zero(d_), light.chunk());
                 const VI material = hn::Add(hn::ShiftLeft<3>(surface), hn::IfThenElse(up, hn::Zero(di_), hn::Set(di_, 4)));
                 push_hits(meets, at, material, ahead, light);
@@ -323,11 +303,9 @@ private:
             begin = end;
         }
         if (light.full()) light.flush(d_, seen);
-        if (surfaces_.medium) push_part(bend, p, x, one, s, next, ahead.length, light.chunk());
+        if (surfaces_.medium) push_part(bend, p, x, one, s, next, ahead.length, light);
         return true;
     }
-
-    const GridSurfaces& surfaces_;
 };
 
 template <bool uniform>

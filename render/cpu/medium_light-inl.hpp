@@ -78,15 +78,6 @@ HWY_NOINLINE void set_gradients(const ScreenCells& cells, const TileState& tile,
     }
 }
 
-// classify/lighting.hpp: by a gradient over the weak one.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE void lit_share(D d, const ScreenSurfaces& surfaces, const Direction<V>& gradient, const Direction<V>& eye, V (&share)[3]) {
-    reflect(d, surfaces.lighting, gradient, eye, share);
-    const V one = hn::Set(d, 1.0F), square = hn::Min(dot(gradient, gradient), hn::Set(d, 1e30F));
-    const V weight = hn::Div(square, hn::Add(one, square));
-    for (V& channel : share) channel = hn::MulAdd(weight, hn::Sub(channel, one), one);
-}
-
 // What the fragments' medium sends to the eye at both ends.
 template <class D>
 HWY_NOINLINE void find_shares(D d, const ScreenCells& cells, const TileState& tile, const SurfaceEnds* ends, ShareLists& shares) {
@@ -109,22 +100,10 @@ HWY_NOINLINE void find_shares(D d, const ScreenCells& cells, const TileState& ti
         for (const bool front : {true, false}) {
             const auto& g = gradient[front ? 0 : 1];
             if (front || !one_gradient)
-                lit_share(d, *cells.surfaces, Direction<V>{hn::Load(d, g[0]), hn::Load(d, g[1]), hn::Load(d, g[2])}, eye, sum);
+                lit_share(d, cells.surfaces->lighting, Direction<V>{hn::Load(d, g[0]), hn::Load(d, g[1]), hn::Load(d, g[2])}, eye, sum);
             for (int channel = 0; channel < 3; ++channel) hn::Store(sum[channel], d, (front ? shares.front : shares.back)[channel] + begin);
         }
     }
-}
-
-// Where on the way through a homogeneous segment of that opacity its light comes from in the mean, 0..1: with the optical depth D,
-// 1/D − 1/(e^D − 1). Light that grows linearly along the way is, in the mean, what it is there.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE V mean_place_of_light(D d, V opacity) {
-    const V one = hn::Set(d, 1.0F), passed = hn::Max(hn::Sub(one, opacity), hn::Set(d, 1e-30F));
-    const V depth = hn::Neg(hn::Log(d, passed));
-    const V series = hn::MulAdd(depth, hn::MulAdd(hn::Mul(depth, depth), hn::Set(d, 1.0F / 720), hn::Set(d, -1.0F / 12)), hn::Set(d, 0.5F));
-    const auto thin = hn::Lt(depth, hn::Set(d, 0.5F));  // D⁵/30240 is left out: 1e-6
-    const V place = hn::Sub(hn::Div(one, hn::IfThenElse(thin, one, depth)), hn::Div(passed, hn::IfThenElse(thin, one, opacity)));
-    return hn::IfThenElse(thin, series, place);
 }
 
 // A vector of segments' light, of which they send these shares.

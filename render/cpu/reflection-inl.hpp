@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// classify/lighting.cpp for as many places on isosurfaces at once as a vector has lanes, in float32. Included once per instruction set,
+// classify/lighting.cpp for as many places on isosurfaces or in lit media at once as a vector has lanes, in float32. Included once per instruction set,
 // behind Highway; private to render/cpu.
 #if defined(CELLPROJ_REFLECTION_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef CELLPROJ_REFLECTION_INL
@@ -78,6 +78,27 @@ HWY_INLINE void reflect(D d, const SurfaceLighting& lighting, const Direction<V>
     for (int channel = 0; channel < 3; ++channel) sum[channel] = hn::Set(d, lighting.ambient[channel]);
     for (const SurfaceLighting::Light& light : lighting.lights) add_light(d, light, lighting.exponent, n, eye, sum);
     for (V& channel : sum) channel = hn::IfThenElse(some, channel, one);  // without a normal there is nothing to shade
+}
+
+// What of its light a place in a medium sends to the eye, by a gradient over the weak one.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void lit_share(D d, const SurfaceLighting& lighting, const Direction<V>& gradient, const Direction<V>& eye, V (&share)[3]) {
+    reflect(d, lighting, gradient, eye, share);
+    const V one = hn::Set(d, 1.0F), square = hn::Min(dot(gradient, gradient), hn::Set(d, 1e30F));
+    const V weight = hn::Div(square, hn::Add(one, square));
+    for (V& channel : share) channel = hn::MulAdd(weight, hn::Sub(channel, one), one);
+}
+
+// Where on the way through a homogeneous segment of that opacity its light comes from in the mean, 0..1: with the optical depth D,
+// 1/D − 1/(e^D − 1). Light that grows linearly along the way is, in the mean, what it is there.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V mean_place_of_light(D d, V opacity) {
+    const V one = hn::Set(d, 1.0F), passed = hn::Max(hn::Sub(one, opacity), hn::Set(d, 1e-30F));
+    const V depth = hn::Neg(hn::Log(d, passed));
+    const V series = hn::MulAdd(depth, hn::MulAdd(hn::Mul(depth, depth), hn::Set(d, 1.0F / 720), hn::Set(d, -1.0F / 12)), hn::Set(d, 0.5F));
+    const auto thin = hn::Lt(depth, hn::Set(d, 0.5F));  // D⁵/30240 is left out: 1e-6
+    const V place = hn::Sub(hn::Div(one, hn::IfThenElse(thin, one, depth)), hn::Div(passed, hn::IfThenElse(thin, one, opacity)));
+    return hn::IfThenElse(thin, series, place);
 }
 
 }  // namespace cellproj::cpu::HWY_NAMESPACE

@@ -32,14 +32,15 @@ constexpr unsigned int values_unit = 8;  // behind those of the methods (segment
 
 }  // namespace
 
-void require_grid_drawn(const GridQuality& quality, bool surfaces) {
+void require_grid_drawn(const GridQuality& quality, const GridShading& shading) {
     const auto refuse = [](const char* option, const char* expected, const std::string& found, const char* advice) {
         throw Error({ErrorKind::option, option, expected, found, advice});
     };
-    if (surfaces && quality.sampling.light != GridSampling::Light::segment)
+    if (shading.isosurfaces && quality.sampling.light != GridSampling::Light::segment)
         refuse("--sampling", "slabs by their two slices for isosurfaces", to_string(quality.sampling), "leave out pre or post");
-    if (surfaces && !takes_surfaces(quality.method))
+    if (shading.isosurfaces && !takes_surfaces(quality.method))
         refuse("--method", "a method of light per pixel, blended once, for isosurfaces", to_string(quality.method), "leave it out");
+    if (shading.lit_medium) refuse("--shade-volume", "the CPU backend for the lit volume of a regular grid", "OpenGL", "use --backend cpu, or draw it as tetrahedra (--as tets)");
     // Between two faces the scalar is a cubic; segments of this backend are linear.
     if (quality.method.kind == MethodKind::exact)
         refuse("--method", "one that OpenGL draws for a regular grid", to_string(quality.method),
@@ -81,7 +82,7 @@ void GlGridRenderer::prepare(const GridScene& scene, const GridQuality& quality)
 }
 
 void GlGridRenderer::prepare_here(const GridScene& scene, const GridQuality& quality) {
-    gl::require_grid_drawn(quality, has_surfaces(scene));
+    gl::require_grid_drawn(quality, grid_shading(scene));
     require_grid_cut(quality, ray_cuts(scene));
     if (quality.sampling.cut != GridSampling::Cut::cells) require_sliced(*scene.grid, quality.sampling);
     const bool same_grid = volume_ && scene_.grid == scene.grid;

@@ -22,7 +22,7 @@
 namespace cellproj::gl {
 
 // Throws Error (option) for what this backend does not draw of grids.
-void require_grid_drawn(const GridQuality& quality, bool surfaces);
+void require_grid_drawn(const GridQuality& quality, const GridShading& shading);
 // Likewise for a grid that cannot be sliced so: a texture interpolates values on points, evenly spaced, all of them there.
 void require_sliced(const Grid& grid, const GridSampling& sampling);
 

@@ -147,6 +147,9 @@ GridReference::GridReference(std::shared_ptr<const Grid> grid, std::shared_ptr<c
                              std::shared_ptr<const SurfaceScene> surfaces)
     : scene_{std::move(grid), std::move(transfer), std::move(surfaces)} {
     validate(scene_);
+    if (!has_lit_medium(scene_)) return;
+    const GridUnits units = units_of(*scene_.grid);
+    weak_ = weak_gradient * (units.scalar_high - units.scalar_low) / units.length;
 }
 
 std::vector<GridSurfaceHit> GridReference::surfaces_along(const ScreenTransform::Ray& ray, bool from_origin) const {
@@ -161,14 +164,29 @@ std::vector<GridSurfaceHit> GridReference::surfaces_along(const ScreenTransform:
 }
 
 glm::dvec3 GridReference::gradient_at(const GridSurfaceHit& hit) const {
-    if (!has_surfaces(scene_) || scene_.surfaces->shading == Shading::unlit) return glm::dvec3(0);
+    return has_surfaces(scene_) ? gradient(hit.cell, hit.u) : glm::dvec3(0);
+}
+
+// At a place in a cell.
+glm::dvec3 GridReference::gradient(const GridCell& cell, const glm::dvec3& u) const {
+    if (scene_.surfaces->shading == Shading::unlit) return glm::dvec3(0);
     const Grid& grid = *scene_.grid;
-    if (scene_.surfaces->shading == Shading::flat) return trilinear_gradient(grid.corner_values(hit.cell), hit.u, grid.cell_edges(hit.cell));
-    const std::array<double, 8> weights = corner_weights(hit.u);
+    if (scene_.surfaces->shading == Shading::flat) return trilinear_gradient(grid.corner_values(cell), u, grid.cell_edges(cell));
+    const std::array<double, 8> weights = corner_weights(u);
     glm::dvec3 sum(0);
     for (std::size_t c = 0; c < 8; ++c)
-        sum += weights[c] * point_gradient(grid, {hit.cell[0] + (c & 1U), hit.cell[1] + (c >> 1U & 1U), hit.cell[2] + (c >> 2U)});
+        if (weights[c] > 0) sum += weights[c] * point_gradient(grid, {cell[0] + (c & 1U), cell[1] + (c >> 1U & 1U), cell[2] + (c >> 2U)});
     return sum;
+}
+
+// What the medium of a cell sends to the eye where the ray enters and leaves it.
+ShareEnds GridReference::shares(const GridCrossing& crossing, const ScreenTransform::Ray& ray) const {
+    const Bounds box = scene_.grid->cell_bounds(crossing.cell);
+    const auto share = [&](double t) {
+        const glm::dvec3 over_weak = weak_ > 0 ? gradient(crossing.cell, place_in_cell(box, ray, t)) / weak_ : glm::dvec3(0);
+        return lit_share(scene_.surfaces->lighting, over_weak, -ray.direction);
+    };
+    return {share(crossing.enter), share(crossing.leave)};
 }
 
 // The surface as a layer of the light that it sends back along the ray.
@@ -183,18 +201,20 @@ Light GridReference::reflected(const GridSurfaceHit& hit, const glm::dvec3& dire
 
 Light GridReference::light(const ScreenTransform::Ray& ray, bool from_origin) const {
     CubicLight light(*scene_.transfer);
+    const bool lit = has_lit_medium(scene_);
     for (const Piece& piece : pieces_along(ray, from_origin)) {
         if (light.opaque()) break;
         const double length = piece.crossing.leave - piece.crossing.enter;
+        const ShareEnds ends = lit ? shares(piece.crossing, ray) : whole_share;
         double begin = 0.0;
         for (const IsoCrossing& c : piece.surfaces) {
-            light.add(piece.scalar.part(begin, c.t), (c.t - begin) * length);
+            light.add(piece.scalar.part(begin, c.t), (c.t - begin) * length, ends.part(begin, c.t));
             const double t = piece.at(c.t);
             light.add(reflected({c.surface, t, c.rising, piece.crossing.cell, place_in_cell(scene_.grid->cell_bounds(piece.crossing.cell), ray, t)},
                                 ray.direction));
             begin = c.t;
         }
-        light.add(begin > 0 ? piece.scalar.part(begin, 1.0) : piece.scalar, (1 - begin) * length);
+        light.add(begin > 0 ? piece.scalar.part(begin, 1.0) : piece.scalar, (1 - begin) * length, ends.part(begin, 1.0));
     }
     return light.light();
 }

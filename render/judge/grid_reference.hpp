@@ -13,6 +13,9 @@
 //   each. The scalar on a face is one number for both its cells, so that a surface in it is met exactly once. They are
 //   lit by the trilinear gradient in the cell (flat) or by the gradients of its corners (mesh/grid_gradient.hpp),
 //   trilinear in between (smooth).
+// - Where the medium is lit, each cell sends a share of its light to the eye that is linear along the ray, between
+//   `lit_share` by these gradients where the ray enters and leaves it; perspective rays enter the cell of the eye there.
+//   That is the model, as it is of meshes: the same field on finer cells is lit a little differently, by second order.
 //
 // Accuracy: 1e-10 absolute for colours within 0..1, besides what it changes to move the axes by 1e-15 times the grid's
 // size, its distance from the origin or the eye's distance. Tests: grid_reference_test.
@@ -79,8 +82,11 @@ private:
     struct Piece;
     std::vector<Piece> pieces_along(const ScreenTransform::Ray& ray, bool from_origin) const;
     Light reflected(const GridSurfaceHit& hit, const glm::dvec3& direction) const;
+    glm::dvec3 gradient(const GridCell& cell, const glm::dvec3& u) const;
+    ShareEnds shares(const GridCrossing& crossing, const ScreenTransform::Ray& ray) const;
 
     GridScene scene_;
+    double weak_ = 0;  // weak_gradient [scalar / mesh unit]; 0: there is no gradient
 };
 
 }  // namespace cellproj

@@ -26,7 +26,11 @@ struct ScalarEnds {
 // What of its light the medium of a cell sends to the eye, by channel, at both ends of an interval, linear in between (EKE01 §5.4).
 struct ShareEnds {
     glm::dvec3 front, back;  // ≥ 0
+
+    glm::dvec3 at(double t) const { return (1.0 - t) * front + t * back; }
+    ShareEnds part(double begin, double end) const { return {at(begin), at(end)}; }
 };
+inline constexpr ShareEnds whole_share{glm::dvec3(1.0), glm::dvec3(1.0)};  // all of it
 
 // An interval is cut where the scalar of any medium meets a breakpoint of the transfer function. On such a stretch τ is linear
 // and q cubic; they are kept as Bézier control points, none of them negative, so that halving a stretch cancels nothing.

@@ -153,8 +153,7 @@ Light Reference::light(const ViewRay& ray) const {
         for (const LitSegment& segment : here) {
             media.push_back({segment.at(begin), segment.at(end)});
             if (scene_.opacity_field) opacity.push_back({segment.opacity_at(begin), segment.opacity_at(end)});
-            const auto& [front, back] = segment.shares;
-            if (lit) shares_here.push_back({glm::mix(front, back, segment.share(begin)), glm::mix(front, back, segment.share(end))});
+            if (lit) shares_here.push_back(segment.shares.part(segment.share(begin), segment.share(end)));
         }
         light.add(media, opacity, end - begin, shares_here);
     }
