@@ -38,9 +38,8 @@ void require_grid_drawn(const GridQuality& quality, const GridShading& shading) 
     };
     if (shading.isosurfaces && quality.sampling.light != GridSampling::Light::segment)
         refuse("--sampling", "slabs by their two slices for isosurfaces", to_string(quality.sampling), "leave out pre or post");
-    if (shading.isosurfaces && !takes_surfaces(quality.method))
-        refuse("--method", "a method of light per pixel, blended once, for isosurfaces", to_string(quality.method), "leave it out");
-    if (shading.lit_medium) refuse("--shade-volume", "the CPU backend for the lit volume of a regular grid", "OpenGL", "use --backend cpu, or draw it as tetrahedra (--as tets)");
+    if ((shading.isosurfaces || shading.lit_medium) && !takes_surfaces(quality.method))
+        refuse("--method", "a method of light per pixel, blended once, for isosurfaces and lit media", to_string(quality.method), "leave it out");
     // Between two faces the scalar is a cubic; segments of this backend are linear.
     if (quality.method.kind == MethodKind::exact)
         refuse("--method", "one that OpenGL draws for a regular grid", to_string(quality.method),
@@ -97,7 +96,7 @@ void GlGridRenderer::prepare_here(const GridScene& scene, const GridQuality& qua
     if (!same_surfaces) {
         surfaces_.reset();
         scene_.surfaces.reset();
-        if (has_surfaces(scene)) surfaces_.emplace(scene, volume_->units());
+        if (has_surfaces(scene) || has_lit_medium(scene)) surfaces_.emplace(scene, volume_->units());
     }
     if (!same_surfaces || !same_transfer)
         volume_->set_light(*scene.grid, *scene.transfer, surfaces_ ? std::span(surfaces_->thresholds()) : std::span<const float>());
@@ -186,9 +185,11 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
 
 GridLight GlGridRenderer::light() {
     if (!surfaces_) return {.shader = shader_.get()};
-    return {.shader = medium_ ? shader_.get() : nullptr,
+    const bool lit_medium = medium_ && has_lit_medium(scene_), lit = lit_medium || surfaces_->isosurfaces();
+    return {.shader = medium_ || !surfaces_->isosurfaces() ? shader_.get() : nullptr,
             .surfaces = &*surfaces_,
-            .gradients = surfaces_->smooth() ? &volume_->gradients(*scene_.grid) : nullptr};
+            .gradients = lit && surfaces_->smooth() ? &volume_->gradients(*scene_.grid) : nullptr,
+            .lit_medium = lit_medium};
 }
 
 void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, ClosedTiles* closed, Statistics& statistics) {
