@@ -46,8 +46,10 @@ Decision cells(const GridQuality& quality, const GridFacts& facts) {
 
 Decision order(const GridQuality& quality, const GridFacts& facts) {
     if (facts.rays) return {"order", "none", "rays meet their cells one after the other"};
-    if (facts.front_to_back) return {"order", "front to back, the largest slices first", "pictures may become opaque: it stops behind opaque tiles"};
-    if (quality.sampling.cut == GridSampling::Cut::cells) return {"order", "slices, back to front", "the order of boxes follows from the eye alone"};
+    const bool by_cells = quality.sampling.cut == GridSampling::Cut::cells;
+    if (facts.front_to_back)
+        return {"order", by_cells ? "front to back, the largest slices first" : "front to back", "rays may become opaque: it stops behind opaque tiles"};
+    if (by_cells) return {"order", "slices, back to front", "the order of boxes follows from the eye alone"};
     return {"order", "back to front", "slabs follow each other"};
 }
 

@@ -117,7 +117,6 @@ TEST_F(GridCommand, ItsVolumeIsLit) {
         EXPECT_LT(row.at("error").at("color").at("maximum"), 0.01) << row;
     for (const char* option : {"--backend gl", "--sampling object:8 --iso 20:red:0.5", "--sampling view:9:post:x2 --shading flat"})
         EXPECT_EQ(drawn_as(std::string(voxels) + " --shade-volume " + option), "grid") << option;
-    EXPECT_EQ(drawn_as(std::string(voxels) + " --shade-volume --backend gl --method homogeneous:vertices"), "tetrahedra");
     std::filesystem::remove(folder_ / "p.png");
     expect_refused(std::string(voxels) + " --shade-volume --backend gl --as grid --method homogeneous:vertices", {"--method", "lit media"});
     expect_refused(std::string(voxels) + " --shade-volume --as grid --method average:half", {"--method", "lit media"});
