@@ -14,7 +14,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace accuracy_test {
 
 using testing_support::delaunay_mesh;
 using testing_support::point_field;

@@ -15,7 +15,7 @@
 #include "tests/support/annotation_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace annotation_test {
 
 using testing_support::font;
 using testing_support::numbered_picture;

@@ -17,7 +17,7 @@
 #include "tests/support/folder_test.hpp"
 
 namespace cellproj {
-namespace {
+namespace annotation_text_test {
 
 std::vector<std::string> labels_of(const Ticks& ticks) {
     std::vector<std::string> labels;

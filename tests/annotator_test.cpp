@@ -17,7 +17,7 @@
 #include "tests/support/folder_test.hpp"
 
 namespace cellproj {
-namespace {
+namespace annotator_test {
 
 using testing_support::font;
 using testing_support::numbered_picture;

@@ -22,9 +22,10 @@
 #include "tests/support/differences.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/view_judge.hpp"
 
 namespace cellproj {
-namespace {
+namespace body_test {
 
 using namespace testing_support;
 
@@ -77,7 +78,7 @@ TEST_P(BodiesOfEither, SpheresHalfInsideAgreeWithTheJudge) {
         const auto truths = judge.picture(camera, size);
         EXPECT_LT(largest(compare(cpu_backend().render(scene, camera, size), truths)), cpu_bound(camera));
         EXPECT_LT(largest(compare(cpu_backend().render(scene, camera, size, {.order_per_pixel = true}), truths)), cpu_bound(camera));
-        EXPECT_LT(largest(compare(gl_backend().render(scene, camera, size), judge.picture(camera, size, rasterizer_slack))), 2e-3);
+        EXPECT_TRUE(ViewJudge(judge, camera, size, rasterizer_slack).within(gl_backend().render(scene, camera, size), 2e-3));
     }
 }
 
@@ -117,10 +118,10 @@ TEST_P(BodiesOfEither, AndIsosurfacesAgreeWithTheJudge) {
             for (const bool clipped : {false, true}) {
                 if (clipped) scene.clip = std::make_shared<const ClipRegion>(ClipRegion{{{{0.4, 0.5, 0.6}, {1, 2, -0.5}}}});
                 const Reference judge(scene);
-                const auto truths = judge.picture(camera, size, cpu_slack);
-                EXPECT_LT(largest(compare(cpu_backend().render(scene, camera, size), truths)), cpu_bound(camera)) << medium << opacity << clipped;
-                EXPECT_LT(largest(compare(cpu_backend().render(scene, camera, size, {.order_per_pixel = true}), truths)), cpu_bound(camera)) << medium << opacity << clipped;
-                EXPECT_LT(largest(compare(gl_backend().render(scene, camera, size), judge.picture(camera, size, rasterizer_slack))), 2e-3)
+                const ViewJudge view(judge, camera, size, cpu_slack);
+                EXPECT_TRUE(view.within(cpu_backend().render(scene, camera, size), cpu_bound(camera))) << medium << opacity << clipped;
+                EXPECT_TRUE(view.within(cpu_backend().render(scene, camera, size, {.order_per_pixel = true}), cpu_bound(camera))) << medium << opacity << clipped;
+                EXPECT_TRUE(ViewJudge(judge, camera, size, rasterizer_slack).within(gl_backend().render(scene, camera, size), 2e-3))
                     << medium << opacity << clipped;
             }
         }

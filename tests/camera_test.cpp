@@ -13,7 +13,7 @@
 #include "mesh/error.hpp"
 
 namespace cellproj {
-namespace {
+namespace camera_test {
 
 Camera camera_of(Camera::Projection projection) {
     Camera camera;

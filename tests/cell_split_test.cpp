@@ -15,7 +15,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace cell_split_test {
 
 using testing_support::cube_corners;
 using testing_support::single_cell;

@@ -21,7 +21,7 @@
 #include "tests/support/tet_rays.hpp"
 
 namespace cellproj {
-namespace {
+namespace cell_template_test {
 
 using testing_support::area;
 using testing_support::corner;

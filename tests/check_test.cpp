@@ -10,7 +10,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace check_test {
 
 using testing_support::delaunay_mesh;
 using testing_support::grid_mesh;

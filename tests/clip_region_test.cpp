@@ -20,9 +20,10 @@
 #include "tests/support/differences.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/view_judge.hpp"
 
 namespace cellproj {
-namespace {
+namespace clip_region_test {
 
 using namespace testing_support;
 
@@ -109,7 +110,7 @@ TEST_P(ClipOfEither, RampsAgreeWithTheJudge) {
             const auto truths = judge.picture(camera, size);
             EXPECT_LT(largest(compare(cpu_backend().render(scene, camera, size), truths)), cpu_bound(camera)) << i;
             EXPECT_LT(largest(compare(cpu_backend().render(scene, camera, size, {.order_per_pixel = true}), truths)), cpu_bound(camera)) << i;
-            EXPECT_LT(largest(compare(gl_backend().render(scene, camera, size), judge.picture(camera, size, rasterizer_slack))), 2e-3) << i;
+            EXPECT_TRUE(ViewJudge(judge, camera, size, rasterizer_slack).within(gl_backend().render(scene, camera, size), 2e-3)) << i;
         }
     }
 }
@@ -123,7 +124,7 @@ TEST_P(ClipOfEither, FieldsOnCellsAndOtherMethods) {
     for (const auto& tet : mesh.tets) of_cells.values.push_back(linear(mesh.points[tet[0]]));
     const Scene cells = clipped(scene_of(mesh, of_cells, ramp()), regions[0]);
     EXPECT_LT(largest(compare(cpu_backend().render(cells, camera, size), Reference(cells).picture(camera, size))), cpu_bound(camera));
-    EXPECT_LT(largest(compare(gl_backend().render(cells, camera, size), Reference(cells).picture(camera, size, rasterizer_slack))), 2e-3);
+    EXPECT_TRUE(ViewJudge(Reference(cells), camera, size, rasterizer_slack).within(gl_backend().render(cells, camera, size), 2e-3));
 
     const Scene points = clipped(scene_of(mesh, linear, ramp()), regions[0]);
     const auto of_points = Reference(points).picture(camera, size, rasterizer_slack);
@@ -137,7 +138,7 @@ TEST_P(ClipOfEither, FieldsOnCellsAndOtherMethods) {
 
     Scene two = points;
     two.opacity_field = std::make_shared<ScalarField>(point_field(mesh, [](const glm::dvec3& p) { return p.z; }));
-    EXPECT_LT(largest(compare(gl_backend().render(two, camera, size), Reference(two).picture(camera, size, rasterizer_slack))), 2e-3);
+    EXPECT_TRUE(ViewJudge(Reference(two), camera, size, rasterizer_slack).within(gl_backend().render(two, camera, size), 2e-3));
 }
 
 // Planes along rays, through the eye, and of regions with nothing in them.
@@ -215,10 +216,10 @@ TEST_P(ClipOfEither, IsosurfacesAgreeWithTheJudge) {
                     for (const std::size_t region : {std::size_t{0}, std::size_t{4}}) {
                         const Scene cut = clipped(scene, regions[region]);
                         const Reference judge(cut);
-                        const auto truths = judge.picture(camera, size, cpu_slack);
-                        EXPECT_LT(largest(compare(cpu_backend().render(cut, camera, size), truths)), cpu_bound(camera)) << medium << opacity << region;
-                        EXPECT_LT(largest(compare(cpu_backend().render(cut, camera, size, {.order_per_pixel = true}), truths)), cpu_bound(camera)) << medium << opacity << region;
-                        EXPECT_LT(largest(compare(gl_backend().render(cut, camera, size), judge.picture(camera, size, rasterizer_slack))), 2e-3)
+                        const ViewJudge view(judge, camera, size, cpu_slack);
+                        EXPECT_TRUE(view.within(cpu_backend().render(cut, camera, size), cpu_bound(camera))) << medium << opacity << region;
+                        EXPECT_TRUE(view.within(cpu_backend().render(cut, camera, size, {.order_per_pixel = true}), cpu_bound(camera))) << medium << opacity << region;
+                        EXPECT_TRUE(ViewJudge(judge, camera, size, rasterizer_slack).within(gl_backend().render(cut, camera, size), 2e-3))
                             << medium << opacity << region;
                     }
                 }

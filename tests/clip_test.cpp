@@ -14,7 +14,7 @@
 #include "tests/support/tet_rays.hpp"
 
 namespace cellproj {
-namespace {
+namespace clip_test {
 
 using Corners = std::array<EyeVertex, 4>;
 

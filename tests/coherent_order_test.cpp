@@ -21,7 +21,7 @@
 #include "tests/support/orders.hpp"
 
 namespace cellproj {
-namespace {
+namespace coherent_order_test {
 
 using testing_support::count_order_violations;
 using testing_support::delaunay_mesh;

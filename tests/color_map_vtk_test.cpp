@@ -16,7 +16,7 @@
 #include "classify/transfer_function.hpp"
 
 namespace cellproj {
-namespace {
+namespace color_map_vtk_test {
 
 struct ColorSpace {
     const char* name;

@@ -19,7 +19,7 @@
 #include "render/renderer.hpp"
 #include "tests/support/folder_test.hpp"
 
-namespace {
+namespace command_line_test {
 
 namespace fs = std::filesystem;
 using cellproj::testing_support::FolderTest;

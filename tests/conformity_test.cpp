@@ -27,7 +27,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace conformity_test {
 
 using testing_support::total_volume;
 

@@ -23,7 +23,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace cpu_grid_test {
 
 using testing_support::constant_medium;
 using testing_support::grid_of;

@@ -25,7 +25,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace cpu_renderer_test {
 
 using testing_support::chord_in_unit_cube;
 using testing_support::constant_medium;

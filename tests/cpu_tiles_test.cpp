@@ -18,7 +18,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace cpu_tiles_test {
 
 using testing_support::constant_medium;
 using testing_support::grid_mesh;

@@ -27,7 +27,7 @@
 #include "tests/read_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace curved_cells_test {
 
 // `grid` stays: to_dataset empties what it is given.
 Dataset dataset_of(vtkUnstructuredGrid& grid, const char* place, int subdivide = 1) {

@@ -8,7 +8,7 @@
 
 #include "tests/support/voxel_scene_test.hpp"
 
-namespace {
+namespace cut_options_test {
 
 using cellproj::testing_support::Outcome;
 using cellproj::testing_support::Pixel;

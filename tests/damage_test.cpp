@@ -21,7 +21,7 @@
 #include "tests/support/folder_test.hpp"
 
 namespace cellproj {
-namespace {
+namespace damage_test {
 
 using testing_support::DamageSample;
 

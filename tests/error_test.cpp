@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace cellproj {
-namespace {
+namespace error_test {
 
 TEST(Error, MessageJoinsItsParts) {
     const Error error({ErrorKind::data, "a.vtu, point 3", "finite coordinates", "(nan, 0, 0)", "remove it"});

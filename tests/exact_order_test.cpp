@@ -32,7 +32,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace exact_order_test {
 
 using namespace testing_support;
 

@@ -20,7 +20,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace extremes_test {
 
 using testing_support::constant_medium;
 using testing_support::grid_mesh;

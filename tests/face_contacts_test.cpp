@@ -20,7 +20,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace face_contacts_test {
 
 using testing_support::grid_mesh;
 

@@ -11,7 +11,7 @@
 #include "tests/support/folder_test.hpp"
 
 namespace cellproj {
-namespace {
+namespace frames_test {
 
 using Row = std::map<std::string, std::string>;  // by column
 

@@ -22,7 +22,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace gl_grid_test {
 
 using Projection = Camera::Projection;
 using Field = std::function<double(const glm::dvec3&)>;

@@ -21,7 +21,7 @@
 #include "tests/support/spherical_harmonic.hpp"
 
 namespace cellproj {
-namespace {
+namespace gl_slabs_test {
 
 using testing_support::unit_cube;
 using Projection = Camera::Projection;

@@ -24,9 +24,10 @@
 #include "tests/support/either_projection.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/view_judge.hpp"
 
 namespace cellproj {
-namespace {
+namespace gl_surfaces_test {
 
 using namespace testing_support;
 
@@ -69,16 +70,16 @@ struct Judged {
 };
 
 // Of all pixels; sanitizers slow the judge down: of every ninth.
-std::vector<PixelTruth> truths_of(const Scene& scene, const Camera& camera, ImageSize size) {
+ViewJudge<Reference> view_of(const Scene& scene, const Camera& camera, ImageSize size) {
     std::vector<PixelId> pixels = all_pixels(size);
     if (CELLPROJ_SANITIZED) std::erase_if(pixels, [&](const PixelId& pixel) { return (pixel.x + size.width * pixel.y) % 9 != 4; });
-    return Reference(scene).pixels(camera, size, pixels, slack);
+    return {Reference(scene), camera, size, slack, pixels};
 }
 
-Judged judge(const Scene& scene, const std::vector<PixelTruth>& truths, const Camera& camera, ImageSize size, const Quality& quality) {
+Judged judge(const Scene& scene, const ViewJudge<Reference>& view, const Camera& camera, ImageSize size, const Quality& quality) {
     Judged result;
     const Image image = gl().render(scene, camera, size, quality, &result.statistics);
-    for (const PixelTruth& pixel : truths) {
+    for (const PixelTruth& pixel : view.truths_for(image, 1e-6)) {  // below all bounds asked for
         const glm::dvec4 error = error_of_pixel(image, pixel);
         const double worst = std::max({error.r, error.g, error.b, error.a});
         ++result.pixels;
@@ -89,7 +90,7 @@ Judged judge(const Scene& scene, const std::vector<PixelTruth>& truths, const Ca
 }
 
 Judged judge(const Scene& drawn, const Scene& truth, const Camera& camera, ImageSize size = usual_size) {
-    return judge(drawn, truths_of(truth, camera, size), camera, size, {});
+    return judge(drawn, view_of(truth, camera, size), camera, size, {});
 }
 
 Judged judge(const Scene& scene, const Camera& camera, ImageSize size = usual_size) { return judge(scene, scene, camera, size); }
@@ -141,15 +142,15 @@ TEST_P(GlSurfacesOfEither, LieWhereTheJudgeHasThem) {
 TEST_P(GlSurfacesOfEither, InAMediumByEveryMethod) {
     const Camera camera = view_of_unit_cube(GetParam());
     const Scene medium = scene_of(grid_mesh(5, 0.2, 4), linear, ramp());
-    const auto alone = truths_of(medium, camera, usual_size);
+    const auto alone = view_of(medium, camera, usual_size);
     for (const double opacity : {1.0, 0.5}) {
         const Scene scene = three_in(medium, opacity, Shading::smooth);
-        const auto truths = truths_of(scene, camera, usual_size);
+        const auto view = view_of(scene, camera, usual_size);
         for (const char* name : {"integral", "exact:1e-5", "linear:8", "homogeneous", "stein", "average", "preint2d:128", "preint2d-exp:256",
                                  "preint3d:64", "preint3d:64:linear"}) {
             const Quality quality{.method = parse_method(name)};
             const double own = judge(medium, alone, camera, usual_size, quality).largest;
-            EXPECT_LT(judge(scene, truths, camera, usual_size, quality).largest, 1.1 * own + 2e-4) << name;
+            EXPECT_LT(judge(scene, view, camera, usual_size, quality).largest, 1.1 * own + 2e-4) << name;
         }
     }
 }
@@ -163,8 +164,8 @@ TEST_P(GlSurfacesOfEither, InAMediumOfTwoFields) {
         other.values[100] = hole;
         scene.opacity_field = std::make_shared<ScalarField>(other);
         for (const char* name : {"integral", "linear:16"}) {
-            const auto truths = truths_of(scene, camera, usual_size);
-            EXPECT_LT(judge(scene, truths, camera, usual_size, {.method = parse_method(name)}).largest, 1e-3) << name << hole;
+            const auto view = view_of(scene, camera, usual_size);
+            EXPECT_LT(judge(scene, view, camera, usual_size, {.method = parse_method(name)}).largest, 1e-3) << name << hole;
         }
     }
 }
@@ -179,9 +180,9 @@ TEST_P(GlSurfacesOfEither, InAMediumOfManyPieces) {
     }
     const Camera camera = view_of_unit_cube(GetParam());
     const Scene scene = three_in(scene_of(grid_mesh(4, 0.2, 6), linear, {OpticalModel::density, color, extinction}), 0.5, Shading::unlit);
-    const auto truths = truths_of(scene, camera, usual_size);
+    const auto view = view_of(scene, camera, usual_size);
     for (const char* name : {"integral", "exact:1e-5"})
-        EXPECT_LT(judge(scene, truths, camera, usual_size, {.method = parse_method(name)}).largest, 1e-3) << name;
+        EXPECT_LT(judge(scene, view, camera, usual_size, {.method = parse_method(name)}).largest, 1e-3) << name;
 }
 
 // Any scalars: what the cells' faces say decides, and no linear field hides a mistake. Where surfaces fold, the moved points show in

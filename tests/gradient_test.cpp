@@ -15,7 +15,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace gradient_test {
 
 using testing_support::grid_mesh;
 using testing_support::point_field;

@@ -14,7 +14,7 @@
 
 #include "tests/support/folder_test.hpp"
 
-namespace {
+namespace grid_command_test {
 
 using cellproj::testing_support::FolderTest;
 using cellproj::testing_support::Outcome;

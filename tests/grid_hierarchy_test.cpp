@@ -16,7 +16,7 @@
 #include "tests/support/grid_hierarchies.hpp"
 
 namespace cellproj {
-namespace {
+namespace grid_hierarchy_test {
 
 using testing_support::block;
 using testing_support::corner_refined;

@@ -22,7 +22,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace grid_reference_test {
 
 using testing_support::constant_medium;
 using testing_support::grid_of;

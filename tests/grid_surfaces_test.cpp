@@ -25,7 +25,7 @@
 #include "tests/support/spherical_harmonic.hpp"
 
 namespace cellproj {
-namespace {
+namespace grid_surfaces_test {
 
 using testing_support::constant_medium;
 using testing_support::grid_of;

@@ -14,7 +14,7 @@
 #include "tests/read_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace grid_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 

@@ -14,7 +14,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace grid_trade_test {
 
 using testing_support::unit_cube;
 using testing_support::view_of_unit_cube;

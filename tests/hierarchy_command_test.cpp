@@ -12,7 +12,7 @@
 
 #include "tests/support/folder_test.hpp"
 
-namespace {
+namespace hierarchy_command_test {
 
 using cellproj::testing_support::FolderTest;
 using cellproj::testing_support::Outcome;

@@ -19,7 +19,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace hierarchy_picture_test {
 
 using testing_support::block;
 using testing_support::constant_medium;

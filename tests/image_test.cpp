@@ -30,7 +30,7 @@
 #include "tests/support/folder_test.hpp"
 
 namespace cellproj {
-namespace {
+namespace image_test {
 
 namespace fs = std::filesystem;
 

@@ -9,7 +9,7 @@
 
 #include "tests/support/voxel_scene_test.hpp"
 
-namespace {
+namespace iso_options_test {
 
 using cellproj::testing_support::Outcome;
 using cellproj::testing_support::Pixel;
@@ -59,7 +59,10 @@ TEST_F(IsoOptions, ShadingAndLight) {
     }
     EXPECT_EQ(run("--iso 5 --shading round").code, 2);
     EXPECT_EQ(run("--shading flat").code, 2);
-    EXPECT_EQ(run("--iso 5 --light 1,2").code, 2);
+    // Ambient light is white, a tenth; the rest of each light has its colour.
+    EXPECT_EQ(seen("--iso 5:#ffffff --light 0,0,-3:1,0,0 --light eye:0,0,1"), (Pixel{255, 26, 255}));
+    EXPECT_EQ(seen("--iso 5:#ffffff --light 0,0,1:red --light eye:0,0.5,0"), (Pixel{26, 140, 26}));
+    EXPECT_NE(content("p.png").find("--light 0,0,1:red --light eye:0,0.5,0"), std::string::npos);
     EXPECT_EQ(run("--volume").code, 2);
 }
 
@@ -104,6 +107,10 @@ TEST_F(IsoOptions, WrongOnesAreRefusedByName) {
     expect_refused("--iso 5:red:1:2", {"--iso again"});
     expect_refused("--iso 5 --iso 6,5", {"--iso", "5", "twice"});
     expect_refused("--iso 5 --light 0,0,0", {"--light"});
+    expect_refused("--iso 5 --light 1,2", {"--light", "\"1,2\"", "eye"});
+    expect_refused("--iso 5 --light nowhere", {"--light", "\"nowhere\""});
+    expect_refused("--iso 5 --light 1,2,3:mauve", {"--light", "\"mauve\"", "#RRGGBB"});
+    expect_refused("--iso 5 --light 1,2,3:red:2", {"--light", "again"});
 }
 
 TEST_F(IsoOptions, ValuesWithoutASurfaceAreNotSilent) {

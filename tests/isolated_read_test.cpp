@@ -11,7 +11,7 @@
 #include "mesh/io/byte_stream.hpp"
 
 namespace cellproj {
-namespace {
+namespace isolated_read_test {
 
 // As after a fork at a bad moment: the first child waits for ever, the second one does not.
 TEST(IsolatedRead, AChildThatStandsStillIsTriedOnceMore) {

@@ -15,7 +15,7 @@
 #include "mesh/error.hpp"
 
 namespace cellproj {
-namespace {
+namespace isosurface_test {
 
 IsoSurfaces surfaces_at(const std::vector<double>& values, double opacity = 0.5) {
     std::vector<IsoSurface> surfaces;

@@ -16,7 +16,7 @@
 #include "mesh/error.hpp"
 
 namespace cellproj {
-namespace {
+namespace lighting_test {
 
 const glm::dvec3 orange(1, 0.5, 0.25), to_eye(0, 0, 1);
 

@@ -23,7 +23,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace medium_light_test {
 
 using namespace testing_support;
 using scenes::waves;

@@ -25,7 +25,7 @@
 #include "tests/support/scratch_folder.hpp"
 
 namespace cellproj {
-namespace {
+namespace mesher_failure_test {
 
 namespace fs = std::filesystem;
 using mesher_fixtures::error_of;

@@ -22,7 +22,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace mesher_test {
 
 using mesher_fixtures::add_box;
 using mesher_fixtures::error_of;

@@ -15,7 +15,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace method_picture_test {
 
 using testing_support::Chord;
 using testing_support::chord_in_first_cell;

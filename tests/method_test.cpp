@@ -12,7 +12,7 @@
 #include "mesh/error.hpp"
 
 namespace cellproj {
-namespace {
+namespace method_test {
 
 TEST(Method, NamesAndChoicesAreRead) {
     const Method table = parse_method("preint3d:uint8:128:linear");

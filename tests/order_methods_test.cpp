@@ -22,7 +22,7 @@
 #include "tests/support/orders.hpp"
 
 namespace cellproj {
-namespace {
+namespace order_methods_test {
 
 using testing_support::count_order_violations;
 using testing_support::delaunay_mesh;

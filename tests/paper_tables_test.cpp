@@ -17,7 +17,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace paper_tables_test {
 
 using testing_support::through_stacked_cells;
 

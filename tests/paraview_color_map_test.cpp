@@ -15,7 +15,7 @@
 #include "tests/support/transfer_errors.hpp"
 
 namespace cellproj {
-namespace {
+namespace paraview_color_map_test {
 
 std::string paraview(const std::string& color_space, const std::string& more = "") {
     return R"([{"ColorSpace": ")" + color_space + R"(", "Name": "Cool to Warm", "NanColor": [1, 1, 0],

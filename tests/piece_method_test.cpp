@@ -19,7 +19,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace piece_method_test {
 
 struct Function {
     std::string name;

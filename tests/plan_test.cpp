@@ -28,7 +28,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace plan_test {
 
 using scenes::peaks;
 using scenes::waves;

@@ -15,7 +15,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace plane_cut_test {
 
 using namespace testing_support;
 

@@ -11,7 +11,7 @@
 #include <random>
 
 namespace cellproj {
-namespace {
+namespace predicates_test {
 
 __extension__ using Wide = __int128;
 using Integers = std::array<std::int64_t, 3>;

@@ -11,7 +11,7 @@
 #include "classify/segment_integral.hpp"
 
 namespace cellproj {
-namespace {
+namespace preintegration_table_test {
 
 constexpr double float_ulp = 0x1p-23;
 

@@ -13,7 +13,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace prepared_surfaces_test {
 
 using namespace testing_support;
 

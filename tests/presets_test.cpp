@@ -12,7 +12,7 @@
 #include "mesh/error.hpp"
 
 namespace cellproj {
-namespace {
+namespace presets_test {
 
 constexpr double half_step = 0.5 / 255;  // what presets.hpp promises against the published tables
 

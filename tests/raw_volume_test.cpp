@@ -13,7 +13,7 @@
 #include "tests/read_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace raw_volume_test {
 
 template <class T>
 std::string bytes_of_values(const std::vector<T>& values, bool big_endian) {

@@ -18,7 +18,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace ray_index_test {
 
 using testing_support::grid_mesh;
 using testing_support::relabelled;

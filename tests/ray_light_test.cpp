@@ -15,7 +15,7 @@
 #include "classify/segment_integral.hpp"
 
 namespace cellproj {
-namespace {
+namespace ray_light_test {
 
 // The bound that the header states.
 constexpr double stated = 1e-12;

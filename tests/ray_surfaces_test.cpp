@@ -30,7 +30,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace ray_surfaces_test {
 
 using namespace testing_support;
 

@@ -10,7 +10,7 @@
 #include "tests/read_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace read_cases_test {
 
 // ---- Real files ----
 

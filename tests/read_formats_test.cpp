@@ -29,7 +29,7 @@
 #include "tests/read_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace read_formats_test {
 
 // ---- Small datasets, written by VTK ----
 

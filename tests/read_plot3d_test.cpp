@@ -18,7 +18,7 @@
 #include "tests/read_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace read_plot3d_test {
 
 struct Plot3dForm {
     bool big_endian, records, block_count, double_precision, iblank;

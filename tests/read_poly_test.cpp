@@ -24,7 +24,7 @@
 #include "tests/surface_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace read_poly_test {
 
 namespace fs = std::filesystem;
 using mesher_fixtures::error_of;

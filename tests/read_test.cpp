@@ -19,7 +19,7 @@
 #include "tests/support/folder_test.hpp"
 
 namespace cellproj {
-namespace {
+namespace read_test {
 
 // ---- Small unstructured files as text ----
 

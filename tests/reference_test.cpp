@@ -26,7 +26,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace reference_test {
 
 using testing_support::delaunay_mesh;
 using testing_support::grid_mesh;

@@ -23,7 +23,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace renderer_test {
 
 using testing_support::delaunay_mesh;
 using testing_support::grid_mesh;

@@ -14,7 +14,7 @@
 #include "tests/support/transfer_errors.hpp"
 
 namespace cellproj {
-namespace {
+namespace scalar_axis_test {
 
 TransferFunction of_extinction(const std::vector<ExtinctionNode>& nodes) {
     return {OpticalModel::density, {{1.0, {1, 1, 1}}}, on_axis(nodes, ScalarAxis::log)};

@@ -12,7 +12,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace scalar_field_test {
 
 using testing_support::unit_tet;
 

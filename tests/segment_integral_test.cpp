@@ -13,7 +13,7 @@
 #include "classify/optics.hpp"
 
 namespace cellproj {
-namespace {
+namespace segment_integral_test {
 
 // The quadrature's own bound is 1e-15 of the value; some hundred parts add their rounding.
 constexpr double relative = 1e-13;

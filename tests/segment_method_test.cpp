@@ -16,7 +16,7 @@
 #include "tests/support/differences.hpp"
 
 namespace cellproj {
-namespace {
+namespace segment_method_test {
 
 using testing_support::distance;
 

@@ -18,7 +18,7 @@
 #include "tests/read_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace shared_data_test {
 
 // ---- Volumes ----
 

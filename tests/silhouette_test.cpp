@@ -13,7 +13,7 @@
 #include "tests/support/tet_rays.hpp"
 
 namespace cellproj {
-namespace {
+namespace silhouette_test {
 
 using testing_support::area;
 using testing_support::cast;

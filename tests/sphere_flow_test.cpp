@@ -14,7 +14,7 @@
 #include "mesh/predicates.hpp"
 
 namespace cellproj {
-namespace {
+namespace sphere_flow_test {
 
 double potential(const glm::dvec3& p) {
     const double r = glm::length(p);

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 namespace cellproj {
-namespace {
+namespace statistics_test {
 
 using Json = nlohmann::json;
 

@@ -22,7 +22,7 @@
 #include "tests/mesher_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace surface_filling_test {
 
 namespace fs = std::filesystem;
 using mesher_fixtures::add_box;

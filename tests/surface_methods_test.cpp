@@ -23,9 +23,10 @@
 #include "tests/support/either_projection.hpp"
 #include "tests/support/meshes.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/view_judge.hpp"
 
 namespace cellproj {
-namespace {
+namespace surface_methods_test {
 
 using namespace testing_support;
 
@@ -53,14 +54,9 @@ std::vector<IsoSurface> rounded(std::vector<IsoSurface> list, const ScalarRange&
     return list;
 }
 
-double error(const Scene& drawn, const Quality& quality, const Scene& truth, const Camera& camera) {
-    const Image image = gl().render(drawn, camera, size, quality);
-    double largest = 0;
-    for (const PixelTruth& pixel : Reference(truth).pixels(camera, size, all_pixels(size), rasterizer_slack)) {
-        const glm::dvec4 e = error_of_pixel(image, pixel);
-        largest = std::max({largest, e.r, e.g, e.b, e.a});
-    }
-    return largest;
+// Exact from `enough` on.
+double error(const Scene& drawn, const Quality& quality, const Scene& truth, const Camera& camera, double enough = 1e-5) {
+    return largest(ViewJudge(Reference(truth), camera, size, rasterizer_slack).compare(gl().render(drawn, camera, size, quality), enough));
 }
 
 class SurfaceMethods : public testing::TestWithParam<Camera::Projection> {};

@@ -18,7 +18,7 @@
 #include "tests/surface_fixtures.hpp"
 
 namespace cellproj {
-namespace {
+namespace surface_test {
 
 namespace fs = std::filesystem;
 using mesher_fixtures::error_of;

@@ -12,7 +12,7 @@
 #include "classify/transfer_change.hpp"
 
 namespace cellproj {
-namespace {
+namespace table_update_test {
 
 using Colors = std::vector<ColorNode>;
 using Extinctions = std::vector<ExtinctionNode>;

@@ -14,7 +14,7 @@
 #include "tests/support/layers.hpp"
 
 namespace cellproj {
-namespace {
+namespace target_format_test {
 
 using testing_support::through_stacked_cells;
 

@@ -17,7 +17,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace tet_mesh_test {
 
 using testing_support::grid_mesh;
 using testing_support::total_volume;

@@ -16,7 +16,7 @@
 #include "tests/support/tet_rays.hpp"
 
 namespace cellproj {
-namespace {
+namespace tet_projection_test {
 
 using testing_support::area;
 using testing_support::cast;

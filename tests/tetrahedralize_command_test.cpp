@@ -33,7 +33,7 @@
 #include "tests/support/folder_test.hpp"
 
 namespace cellproj {
-namespace {
+namespace tetrahedralize_command_test {
 
 namespace fs = std::filesystem;
 using mesher_fixtures::add_box;

@@ -14,7 +14,7 @@
 #include "tests/support/meshes.hpp"
 
 namespace cellproj {
-namespace {
+namespace tetrahedralize_test {
 
 using testing_support::cube_corners;
 using testing_support::single_cell;

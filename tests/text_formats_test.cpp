@@ -23,7 +23,7 @@
 
 namespace cellproj {
 
-namespace {
+namespace text_formats_test {
 
 namespace fs = std::filesystem;
 using namespace testing_support;

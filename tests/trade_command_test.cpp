@@ -15,7 +15,7 @@
 
 #include "tests/support/folder_test.hpp"
 
-namespace {
+namespace trade_command_test {
 
 namespace fs = std::filesystem;
 using cellproj::testing_support::FolderTest;

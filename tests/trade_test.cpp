@@ -14,7 +14,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace trade_test {
 
 using testing_support::grid_mesh;
 using testing_support::point_field;

@@ -16,7 +16,7 @@
 #include "tests/support/transfer_errors.hpp"
 
 namespace cellproj {
-namespace {
+namespace transfer_function_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -20,7 +20,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace two_fields_test {
 
 using testing_support::chord_in_unit_cube;
 using testing_support::distance;

@@ -24,7 +24,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace vertex_light_test {
 
 using testing_support::Chord;
 using testing_support::chord_in_first_cell;

@@ -23,7 +23,7 @@
 #include "tests/support/orders.hpp"
 
 namespace cellproj {
-namespace {
+namespace visibility_sorter_test {
 
 using testing_support::count_order_violations;
 using testing_support::delaunay_mesh;

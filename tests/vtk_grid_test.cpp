@@ -20,7 +20,7 @@
 #include "mesh/io/vtk_conversion.hpp"
 
 namespace cellproj {
-namespace {
+namespace vtk_grid_test {
 
 // The points (x, y, z) of a grid of 2 by 2 by `layers`, x fastest, then y: a voxel counts them 0, 1, 2, …
 vtkNew<vtkUnstructuredGrid> grid_with_points(int layers) {

@@ -11,7 +11,7 @@ namespace cellproj::cli {
 
 namespace {
 
-const std::map<std::string, DrawnAs> names{{"auto", DrawnAs::automatic}, {"grid", DrawnAs::grid}, {"tets", DrawnAs::tets}};
+const std::map<std::string, DrawnAs> ways{{"auto", DrawnAs::automatic}, {"grid", DrawnAs::grid}, {"tets", DrawnAs::tets}};
 
 // Throws Error (option).
 void require_grid_options(const SceneOptions& options, const PictureWishes& wishes) {
@@ -36,10 +36,10 @@ void require_grid_options(const SceneOptions& options, const PictureWishes& wish
 
 void add_grid_options(CLI::App& command, SceneOptions& options) {
     options.drawn_as = DrawnAs::automatic;
-    command.add_option_function<std::string>("--as", [&options](const std::string& name) { options.drawn_as = names.at(name); },
+    command.add_option_function<std::string>("--as", [&options](const std::string& name) { options.drawn_as = ways.at(name); },
                        "How a regular grid (image, rectilinear grid, bare voxels) is drawn: grid (as it is, the scalar trilinear in its boxes), tets "
                        "(cut into tetrahedra), or auto: grid, and tets for what only they know")
-        ->check(CLI::IsMember(names))->default_str("auto");
+        ->check(CLI::IsMember(ways))->default_str("auto");
 }
 
 ChosenBackend choose_grid_backend(BackendWish wish, const GridSampling& sampling, const Gpu& gpu) {

@@ -42,6 +42,25 @@ void add_surfaces(std::string_view text, const TransferFunction& colors, std::ve
     }
 }
 
+DirectionalLight to_light(std::string_view text) {
+    const auto refuse_light = [&](const std::string& expected, std::string_view found) {
+        throw Error({ErrorKind::option, "--light", expected, "\"" + std::string(found) + "\"", "give --light again for a second light"});
+    };
+    const auto parts = split(text, ':');
+    if (parts.size() > 2) refuse_light("X,Y,Z[:COLOR] or eye[:COLOR]", text);
+    DirectionalLight light;
+    if (parts[0] != "eye") {
+        light.towards = to_point(parts[0]);
+        if (!light.towards) refuse_light("a direction, three finite numbers with commas between, or eye", parts[0]);
+    }
+    if (parts.size() > 1) {
+        const auto color = to_color(parts[1]);
+        if (!color) refuse_light(std::string("a colour: ") + color_forms, parts[1]);
+        light.color = *color;
+    }
+    return light;
+}
+
 }  // namespace
 
 const char* const iso_method_help =
@@ -61,8 +80,10 @@ void add_iso_options(CLI::App& command, IsoOptions& options) {
                        "Isosurfaces and --shade-volume: smooth (by the gradients of the points), flat (of the cells), or unlit: isosurfaces in their colour as it is")
         ->check(CLI::IsMember({"flat", "smooth", "unlit"}))->capture_default_str()
         ->each([&options](const std::string&) { options.shading_chosen = true; });
-    command.add_option("--light", options.light, "Isosurfaces, bodies and --shade-volume: towards a distant light, X,Y,Z; default: a headlight")
-        ->expected(3)->delimiter(',');
+    command.add_option("--light", options.lights,
+                       std::string("Isosurfaces, bodies and --shade-volume: towards a distant light, X,Y,Z[:COLOR], or the viewer's own, eye[:COLOR] (again for "
+                                   "more; default: eye). COLOR: ") + color_forms + "; default white")
+        ->allow_extra_args(false);
 }
 
 void require_something_in_volume(const IsoOptions& options, bool slices) {
@@ -84,13 +105,14 @@ SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& c
 void require_shaded(const IsoOptions& options, bool bodies) {
     if (options.shade_volume && options.shading == "unlit") throw CLI::ExcludesError("--shade-volume", "--shading unlit");
     if (options.shading_chosen && !options.any_shaded()) throw CLI::RequiresError("--shading", "--iso or --shade-volume");
-    if (!options.light.empty() && !options.any_shaded() && !bodies)
+    if (!options.lights.empty() && !options.any_shaded() && !bodies)
         throw Error({ErrorKind::option, "--light", "isosurfaces, bodies or a volume to be lit", "none", "give --iso, --surface or --shade-volume"});
 }
 
 Lighting parse_lighting(const IsoOptions& options) {
     Lighting lighting;
-    if (!options.light.empty()) lighting.lights = {{.towards = glm::dvec3(options.light[0], options.light[1], options.light[2])}};
+    if (!options.lights.empty()) lighting.lights.clear();
+    for (const std::string& text : options.lights) lighting.lights.push_back(to_light(text));
     validate(lighting, "--light");
     return lighting;
 }

@@ -20,10 +20,10 @@ namespace cellproj::cli {
 struct IsoOptions {
     std::vector<std::string> surfaces;  // --iso, each VALUE[,VALUE…][:COLOR[:OPACITY]]
     std::string shading = "smooth";
-    std::vector<double> light;  // X,Y,Z towards it; empty: a headlight; of bodies as well
-    bool volume = false;        // the medium around them, and around slices, is drawn, too
-    bool shade_volume = false;  // and lit
-    bool shading_chosen = false;  // by --shading
+    std::vector<std::string> lights;  // each X,Y,Z towards it, or "eye", and [:COLOR]; none: a headlight; of bodies as well
+    bool volume = false;              // the medium around them, and around slices, is drawn, too
+    bool shade_volume = false;        // and lit
+    bool shading_chosen = false;      // by --shading
 
     bool any() const { return !surfaces.empty(); }
     bool any_shaded() const { return any() || shade_volume; }
@@ -42,7 +42,7 @@ void require_something_in_volume(const IsoOptions& options, bool slices);
 // what was found.
 SurfaceScene parse_surfaces(const IsoOptions& options, const TransferFunction& colors);
 
-// --light, or a headlight. Throws Error (option) for a direction without length.
+// --light, or a headlight. Throws Error (option) for what is no light, and for a direction without length.
 Lighting parse_lighting(const IsoOptions& options);
 
 // Throws CLI::ParseError for --shading without anything to be shaded or with nothing to shade it by, Error (option) for --light without anything

@@ -83,16 +83,16 @@ void write(const Image& image, const std::filesystem::path& file, const RenderOp
     }
 }
 
-// No blank or doubtful picture without a word.
-void warn(const Image& image, const Statistics& statistics, const std::filesystem::path& file) {
+// No blank or doubtful picture without a word. `shown`: what decides what there is to be seen.
+void warn(const Image& image, const Statistics& statistics, const std::filesystem::path& file, const char* shown) {
     const bool blank = std::all_of(image.pixels.begin(), image.pixels.end(), [](const glm::vec4& p) {
         return std::max({p.x, p.y, p.z, p.w}) < 0.5F / 255;
     });
     if (blank) {
         std::fprintf(stderr,
                      "cellproj: warning: %s is blank: %zu of %zu cells were in view and visible; check the camera and "
-                     "the transfer function's range\n",
-                     file.c_str(), statistics.counts.drawn, statistics.counts.cells);
+                     "%s\n",
+                     file.c_str(), statistics.counts.drawn, statistics.counts.cells, shown);
     }
     if (!statistics.order_exact) {
         std::fprintf(stderr,
@@ -309,9 +309,10 @@ void render_pictures(const RenderOptions& options) {
             text["cellproj isosurfaces"] += "--iso " + surface + " ";
         if (options.scene.iso.any()) text["cellproj isosurfaces"] += "--shading " + options.scene.iso.shading;
         if (options.scene.iso.shade_volume) text["cellproj volume"] = "--shade-volume --shading " + options.scene.iso.shading;
+        for (const std::string& light : options.scene.iso.lights) text["cellproj lights"] += (text["cellproj lights"].empty() ? "--light " : " --light ") + light;
         if (const std::string cuts = text_of(options.scene.cuts); !cuts.empty()) text["cellproj cuts"] = cuts;
         if (!annotator.note().empty()) text["cellproj note"] = annotator.note();
-        warn(image, statistics, file);
+        warn(image, statistics, file, options.scene.iso.any() ? "the isovalues" : "the transfer function's range");
         write(annotator.compose(std::move(image), cameras[i]), file, options, text);
         statistics.ms.write = writing.ms();
         print_line(file, statistics);

@@ -79,10 +79,10 @@ void CpuGridRenderer::prepare_here(const GridScene& scene, const GridQuality& qu
     scene_ = scene;
     method_ = quality.method;
     classification_.reset();
-    classification_.emplace(method_, transfer, volume_->mean_chord());
     volume_->set_light(transfer, has_surfaces(scene) ? kept_isovalues(scene.surfaces->isosurfaces, units) : std::vector<float>{});
     set_surfaces(transfer.visible(0.0, 1.0));
     bend_ = bend_of(method_, transfer);
+    classification_.emplace(method_, transfer, volume_->mean_chord());  // last: it tells that all is prepared
 }
 
 void CpuGridRenderer::set_surfaces(bool medium) {

@@ -131,8 +131,10 @@ protected:
         for (std::size_t channel = 0; channel < 3; ++channel) change_[channel] = hn::Sub(share[channel], front_[channel]);
     }
 
-    // Of the chunk's steps from number `first` on, which are equal lines from x0 to x1 of the way through the cells.
-    HWY_INLINE void put_shares(const SegmentChunk& chunk, std::size_t first, V x0, V x1, ShareStep* shares) const {
+    // Of the chunk's steps from number `first` on, which are equal lines from x0 to x1 of the way through the cells: as many more as keep light
+    // within what `bend` stands for.
+    HWY_INLINE void put_shares(float bend, SegmentChunk& chunk, std::size_t first, V x0, V x1, ShareStep* shares) const {
+        if (bend < std::numeric_limits<float>::max()) cut_lines(bend, chunk, first, hn::Sub(x1, x0));
         const V width = hn::Mul(hn::Sub(x1, x0), hn::Set(d_, 1.0F / static_cast<float>(chunk.count - first)));
         for (std::size_t i = first; i < chunk.count; ++i) {
             const V x = hn::MulAdd(width, hn::Set(d_, static_cast<float>(i - first)), x0);
@@ -151,6 +153,37 @@ protected:
     const GridSurfaces& surfaces_;
 
 private:
+    // Light that grows by q' along the scalar, times a share that changes by c along a line, is, by the share at the middle, off by
+    // c·Δs·q'/12 of the line's length: as of a scalar that is off by c·Δs/12. Bends count on a tenth of the ray, this on all of it
+    // (grid_bend.cpp).
+    HWY_NOINLINE void cut_lines(float bend, SegmentChunk& chunk, std::size_t first, V width) const {
+        V most = hn::Zero(d_);
+        for (std::size_t i = first; i < chunk.count; ++i) {
+            const SegmentChunk::Step& step = chunk.steps[i];
+            const V difference = hn::Abs(hn::Sub(hn::Load(d_, step.back), hn::Load(d_, step.front)));
+            most = hn::Max(most, hn::IfThenElseZero(hn::Gt(hn::Load(d_, step.length), hn::Zero(d_)), difference));
+        }
+        const std::size_t lines = chunk.count - first;
+        V change = hn::Max(hn::Max(hn::Abs(change_[0]), hn::Abs(change_[1])), hn::Abs(change_[2]));
+        change = hn::Mul(hn::Mul(change, width), hn::Set(d_, 1.0F / static_cast<float>(lines)));
+        const float off = hn::GetLane(hn::MaxOfLanes(d_, hn::Mul(most, change))) / 12;
+        const float wanted = std::min(std::ceil(std::sqrt(off / (0.1F * bend))), most_parts / static_cast<float>(lines));
+        if (!(wanted >= 2)) return;
+        const auto parts = static_cast<std::size_t>(wanted);
+        chunk.count = first + lines * parts;
+        for (std::size_t i = lines; i-- > 0;) {
+            const V front = hn::Load(d_, chunk.steps[first + i].front), back = hn::Load(d_, chunk.steps[first + i].back);
+            const V per_part = hn::Set(d_, 1.0F / static_cast<float>(parts)), length = hn::Mul(hn::Load(d_, chunk.steps[first + i].length), per_part);
+            for (std::size_t k = 0; k < parts; ++k) {
+                SegmentChunk::Step& step = chunk.steps[first + i * parts + k];
+                const auto at = [&](std::size_t n) HWY_ATTR { return n == parts ? back : this->between(front, back, hn::Mul(hn::Set(d_, static_cast<float>(n)), per_part)); };
+                hn::Store(at(k), d_, step.front);
+                hn::Store(at(k + 1), d_, step.back);
+                hn::Store(length, d_, step.length);
+            }
+        }
+    }
+
     HWY_INLINE void shares_of(const Direction<V>& gradient, V (&share)[3]) const {
         lit_share(d_, surfaces_.lighting, scaled(gradient, hn::Set(d_, static_cast<float>(1 / weak_gradient))), eye_, share);
     }

@@ -169,7 +169,7 @@ private:
         } else {
             this->push(scalar_, next, ahead.length, chunk);
         }
-        if (surfaces_.lit_medium) this->put_shares(chunk, first, hn::Zero(d_), hn::Set(d_, 1.0F), light.shares());
+        if (surfaces_.lit_medium) this->put_shares(bend, chunk, first, hn::Zero(d_), hn::Set(d_, 1.0F), light.shares());
     }
 
     // How many isovalues a scalar is not below. Few are counted, more are searched.
@@ -239,7 +239,7 @@ private:
     HWY_INLINE void push_part(float bend, const Polynomial& p, V x0, V x1, V s0, V s1, V length, SurfaceLight<D>& light) const {
         const std::size_t first = light.chunk().count;
         push_lines_of_part(bend, p, x0, x1, s0, s1, length, light.chunk());
-        if (surfaces_.lit_medium) this->put_shares(light.chunk(), first, x0, x1, light.shares());
+        if (surfaces_.lit_medium) this->put_shares(bend, light.chunk(), first, x0, x1, light.shares());
     }
     HWY_INLINE void push_lines_of_part(float bend, const Polynomial& p, V x0, V x1, V s0, V s1, V length, SegmentChunk& chunk) const {
         const V share = hn::Sub(x1, x0), part = hn::Mul(length, share);
