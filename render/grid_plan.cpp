@@ -16,15 +16,17 @@ namespace {
 // Twenty times below a step of 8 bits.
 constexpr double hidden_light = 1e-4;
 
+// Sums of opacities in float32 are told from 1 by this: 16 of its last digits.
+constexpr double least_share = 1e-6;
+
 constexpr double longest_ray = 2.0;  // in a grid, in GridUnits
 
 double largest(const glm::dvec3& color) { return std::max({color.x, color.y, color.z}); }
 
-// No channel of what a ray meets is brighter. The light of a density is a mean of its colours; what emits but does not absorb adds up.
+// No channel of what a ray meets is brighter. Densities and surfaces give a mean of their colours; what emits but does not absorb adds up.
 double brightest(const TransferFunction& transfer, const SurfaceScene* surfaces) {
     double medium = 0.0, material = 0.0, lit = 1.0;
     for (const ColorNode& node : transfer.color_nodes()) medium = std::max(medium, largest(node.color));
-    if (transfer.model() == OpticalModel::emitter) medium *= longest_ray;
     if (surfaces) {
         for (const IsoSurface& surface : surfaces->isosurfaces.surfaces())
             material = std::max({material, largest(surface.color), largest(surface.back_color.value_or(surface.color))});
@@ -32,7 +34,7 @@ double brightest(const TransferFunction& transfer, const SurfaceScene* surfaces)
         for (const DirectionalLight& light : surfaces->lighting.lights) sum += light.color * (light.diffuse + light.specular);
         lit = std::max(1.0, largest(sum));
     }
-    return lit * std::max(medium, material);
+    return lit * (transfer.model() == OpticalModel::emitter ? longest_ray * medium + material : std::max(medium, material));
 }
 
 Decision cells(const GridQuality& quality, const GridFacts& facts) {
@@ -89,9 +91,8 @@ std::optional<float> hiding_opacity(const TransferFunction& transfer, const Surf
     if (surfaces) {
         for (const IsoSurface& surface : surfaces->isosurfaces.surfaces()) depth -= 2.0 * std::log1p(-surface.opacity);
     }
-    const auto opacity = static_cast<float>(1.0 - hidden);
-    if (!(depth > -std::log(hidden)) || opacity == 1.0F) return std::nullopt;
-    return opacity;
+    if (hidden < least_share || !(depth > -std::log(hidden))) return std::nullopt;
+    return static_cast<float>(1.0 - hidden);
 }
 
 std::vector<Decision> plan_of(const GridScene& scene, const GridQuality& quality, const GridFacts& facts) {

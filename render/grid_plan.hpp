@@ -21,8 +21,8 @@ struct GridFacts {
 };
 
 // The opacity above which what lies behind is left out: it would add less than 1e-4 to any channel. Nothing where rays are not expected to
-// come to it: the largest extinction all along the diagonal of the grid and two crossings of each isosurface do not suffice, or float32 does not
-// tell it from 1. `transfer`: of the scene, over scalars 0..1 and lengths of GridUnits.
+// come to it: the largest extinction all along the diagonal of the grid and two crossings of each isosurface do not suffice, or sums in float32
+// do not tell it from 1. `transfer`: of the scene, over scalars 0..1 and lengths of GridUnits.
 std::optional<float> hiding_opacity(const TransferFunction& transfer, const SurfaceScene* surfaces);
 
 // Cells, order, segments, surfaces, gradients and rays.

@@ -22,7 +22,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace gl_front_to_back_test {
 
 using testing_support::max_difference;
 using testing_support::unit_cube;
@@ -111,7 +111,9 @@ TEST(HidingOpacity, IsThatOfScenesThatMayBecomeOpaque) {
     // Emission adds up along the diagonal.
     const TransferFunction emitter(OpticalModel::emitter, {{0, {5, 0, 0}}}, {{0, 100}});
     EXPECT_EQ(*of(emitter), 1.0F - 1e-5F);
-    EXPECT_FALSE(of({OpticalModel::emitter, {{0, {1e9, 0, 0}}}, {{0, 100}}}));  // float32 has no such opacity
+    // Beside it, a surface.
+    EXPECT_EQ(*of(emitter, {{0.5, {1, 1, 10}, 0.5, {}}}), 1.0F - 5e-6F);
+    EXPECT_FALSE(of({OpticalModel::emitter, {{0, {1e3, 0, 0}}}, {{0, 100}}}));  // too near to 1 for sums in float32
     EXPECT_FALSE(of({OpticalModel::emitter, {{0, {1e60, 0, 0}}}, {{0, 1e60}}}));
     // Surfaces.
     EXPECT_TRUE(of(testing_support::nothing(), {{0.5, {1, 1, 1}, 1, {}}}));
@@ -331,5 +333,5 @@ TEST(GridTraversal, PartsLeaveOutHiddenBricks) {
     }
 }
 
-}  // namespace
+}  // namespace gl_front_to_back_test
 }  // namespace cellproj

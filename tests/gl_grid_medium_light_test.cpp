@@ -24,7 +24,7 @@
 #include "tests/support/scenes.hpp"
 
 namespace cellproj {
-namespace {
+namespace gl_grid_medium_light_test {
 
 using namespace testing_support;
 using scenes::waves;
@@ -65,21 +65,9 @@ INSTANTIATE_TEST_SUITE_P(Projections, GlGridMediumLight, either_projection, name
 // Homogeneous media are exact in the stated model; what is left is float32. Noise, even and uneven axes, blanked cells, surfaces in the medium.
 TEST_P(GlGridMediumLight, CellsAgreeWithTheJudge) {
     std::mt19937_64 random(611);
-    std::uniform_real_distribution<double> unit(0, 1);
     double most[2]{};
     for (int trial = 0; trial < (sanitized ? 8 : 12); ++trial) {
-        const Shading shading = trial % 2 == 0 ? Shading::flat : Shading::smooth;
-        const bool uneven = trial / 2 % 2 == 1, surfaces = trial / 4 % 2 == 1;
-        const auto value = [&](const glm::dvec3&) { return unit(random); };
-        const GridAxis even = uniform_axis(0, 0.2, 6);
-        Grid grid = uneven ? grid_of({uneven_axis(random, 5), uneven_axis(random, 6), uneven_axis(random, 4)}, value) : grid_of({even, even, even}, value);
-        if (trial % 3 == 0) {
-            grid.blanked.assign(grid.cell_count(), 0);
-            for (auto& blanked : grid.blanked) blanked = unit(random) < 0.3 ? 1 : 0;
-        }
-        const Camera camera = frame_bounds(grid.bounds(), GetParam(), {unit(random), -unit(random), unit(random)}, {0.1, 0.2, 1}, 1.2);
-        const double depth = 2 / glm::length(grid.bounds().high - grid.bounds().low);
-        const GridScene scene = lit(grid, constant_medium(depth), shading, two_lights, surfaces ? glass : std::vector<IsoSurface>{});
+        const auto [scene, camera, surfaces] = lit_noise(trial, GetParam(), random);
         // Of surfaces' normals, and rays that graze surfaces: grid_surfaces_test.
         const double bound = surfaces ? 2e-4 : 2e-5, error = error_of(scene, camera, few, {}, bound);
         EXPECT_LT(error, bound) << trial;
@@ -309,5 +297,5 @@ TEST(GlGridMediumLightOfAny, WhatCannotBeLitIsRefused) {
     EXPECT_NO_THROW(gl().render(scene, camera, few));
 }
 
-}  // namespace
+}  // namespace gl_grid_medium_light_test
 }  // namespace cellproj

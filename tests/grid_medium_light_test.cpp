@@ -245,21 +245,9 @@ double error_of(const GridScene& scene, const Camera& camera, ImageSize size, co
 // cells, surfaces in the medium.
 TEST_P(GridMediumLightOfEither, AgreesWithTheJudge) {
     std::mt19937_64 random(603);
-    std::uniform_real_distribution<double> unit(0, 1);
     double most[2]{};
     for (int trial = 0; trial < (sanitized ? 6 : 16); ++trial) {
-        const Shading shading = trial % 2 == 0 ? Shading::flat : Shading::smooth;
-        const bool uneven = trial / 2 % 2 == 1, surfaces = trial / 4 % 2 == 1;
-        const auto value = [&](const glm::dvec3&) { return unit(random); };
-        const GridAxis even = uniform_axis(0, 0.2, 6);
-        Grid grid = uneven ? grid_of({uneven_axis(random, 5), uneven_axis(random, 6), uneven_axis(random, 4)}, value) : grid_of({even, even, even}, value);
-        if (trial % 3 == 0) {
-            grid.blanked.assign(grid.cell_count(), 0);
-            for (auto& blanked : grid.blanked) blanked = unit(random) < 0.3 ? 1 : 0;
-        }
-        const Camera camera = frame_bounds(grid.bounds(), GetParam(), {unit(random), -unit(random), unit(random)}, {0.1, 0.2, 1}, 1.2);
-        const double depth = 2 / glm::length(grid.bounds().high - grid.bounds().low);
-        const GridScene scene = lit(grid, constant_medium(depth), shading, two_lights, surfaces ? glass : std::vector<IsoSurface>{});
+        const auto [scene, camera, surfaces] = lit_noise(trial, GetParam(), random);
         const double error = error_of(scene, camera, few, {}, surfaces ? 2e-4 : 1e-5);
         EXPECT_LT(error, surfaces ? 2e-4 : 1e-5) << trial;  // of surfaces' normals: grid_surfaces_test
         most[surfaces ? 1 : 0] = std::max(most[surfaces ? 1 : 0], error);

@@ -20,12 +20,28 @@ namespace {
 
 constexpr unsigned int color_unit = 14;  // shaders/grid_open.frag
 
-// Depths of pixels; what is drawn has 1/2, and passes where that is more.
-constexpr float open_depth = 0.0F, closed_depth = 1.0F;
+// Of pixels. What is drawn has 1/2, and passes where that is more: where the depth is 0, as in a cleared target, or by shaders/grid_open.vert.
+constexpr float closed_depth = 1.0F;
 
 constexpr std::array<VertexAttribute, 1> outline_attributes{{{0, 2, offsetof(OutlineVertex, x)}}};
 
-int tiles(int pixels) { return (pixels + ClosedTiles::side - 1) / ClosedTiles::side; }
+std::size_t tiles(int pixels) { return static_cast<std::size_t>((pixels + ClosedTiles::side - 1) / ClosedTiles::side); }
+
+// 1 for tiles with a pixel that is open, row by row.
+std::vector<std::size_t> open_tiles(std::span<const float> depths, ImageSize size) {
+    const auto width = static_cast<std::size_t>(size.width);
+    const std::size_t columns = tiles(size.width);
+    std::vector<std::size_t> open(columns * tiles(size.height), 0);
+    for (std::size_t y = 0; y < static_cast<std::size_t>(size.height); ++y) {
+        const std::span<const float> row = depths.subspan(y * width, width);
+        std::size_t* tile = &open[y / ClosedTiles::side * columns];
+        for (std::size_t x = 0; x < width; x += ClosedTiles::side) {
+            const auto pixels = row.subspan(x, std::min<std::size_t>(ClosedTiles::side, width - x));
+            if (*std::min_element(pixels.begin(), pixels.end()) < closed_depth) tile[x / ClosedTiles::side] = 1;
+        }
+    }
+    return open;
+}
 
 }  // namespace
 
@@ -39,8 +55,7 @@ ClosedTiles::ClosedTiles(const GridView& view, const Target& picture, Programs& 
       columns_(tiles(view.transform().size().width)),
       rows_(tiles(view.transform().size().height)) {
     program_.set("opaque", opaque);
-    const ImageSize size = view.transform().size();
-    count_open(std::vector<float>(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height), open_depth));
+    sum_up(std::vector<std::size_t>(columns_ * rows_, 1));
     blend_front_to_back();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
@@ -72,26 +87,15 @@ bool ClosedTiles::look(std::span<const glm::dvec3> rest) {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 
     const std::size_t open = open_;
-    count_open(picture_.read_depths());
+    sum_up(open_tiles(picture_.read_depths(), view_.transform().size()));
     return open_ < open;
 }
 
-void ClosedTiles::count_open(std::span<const float> depths) {
-    const int width = view_.transform().size().width;
-    std::vector<std::size_t> open(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0);
-    for (std::size_t y = 0; y < depths.size() / static_cast<std::size_t>(width); ++y) {
-        const std::span<const float> row = depths.subspan(y * static_cast<std::size_t>(width), static_cast<std::size_t>(width));
-        std::size_t* tile = &open[y / side * static_cast<std::size_t>(columns_)];
-        for (std::size_t x = 0; x < row.size(); x += side) {
-            float nearest = closed_depth;
-            for (const float depth : row.subspan(x, std::min<std::size_t>(side, row.size() - x))) nearest = std::min(nearest, depth);
-            if (nearest < closed_depth) tile[x / side] = 1;
-        }
-    }
-    const auto stride = static_cast<std::size_t>(columns_) + 1;
-    before_.assign(stride * (static_cast<std::size_t>(rows_) + 1), 0);
+void ClosedTiles::sum_up(std::span<const std::size_t> open) {
+    const std::size_t stride = columns_ + 1;
+    before_.assign(stride * (rows_ + 1), 0);
     for (std::size_t i = 0; i < open.size(); ++i) {
-        const std::size_t at = i / (stride - 1) * stride + i % (stride - 1);
+        const std::size_t at = i / columns_ * stride + i % columns_;
         before_[at + stride + 1] = before_[at + 1] + before_[at + stride] - before_[at] + open[i];
     }
     open_ = before_.back();
@@ -107,10 +111,10 @@ bool ClosedTiles::hide(std::span<const glm::dvec3> corners) const {
         low = glm::min(low, place - outline_margin);
         high = glm::max(high, place + outline_margin);
     }
-    const auto tile = [](double pixel, int count) { return static_cast<std::size_t>(std::clamp(std::floor(pixel / side), 0.0, static_cast<double>(count))); };
+    const auto tile = [](double pixel, std::size_t count) { return static_cast<std::size_t>(std::clamp(std::floor(pixel / side), 0.0, static_cast<double>(count))); };
     const std::size_t left = tile(low.x, columns_), right = tile(high.x + side, columns_), top = tile(low.y, rows_), bottom = tile(high.y + side, rows_);
     if (!(left < right && top < bottom)) return true;
-    const auto stride = static_cast<std::size_t>(columns_) + 1;
+    const std::size_t stride = columns_ + 1;
     return before_[bottom * stride + right] + before_[top * stride + left] == before_[bottom * stride + left] + before_[top * stride + right];
 }
 

@@ -44,21 +44,21 @@ public:
     bool hide(std::span<const glm::dvec3> corners) const;
 
 private:
-    void count_open(std::span<const float> depths);
+    void sum_up(std::span<const std::size_t> open);
 
     const GridView& view_;
     const Target& picture_;
     const Program& program_;
     TriangleStream& outlines_;
-    int columns_, rows_;
-    std::size_t open_;                 // tiles
+    std::size_t columns_, rows_;       // of tiles
+    std::size_t open_;                 // how many are
     std::vector<std::size_t> before_;  // (rows + 1) × (columns + 1): open tiles above and to the left
 };
 
-// How many steps of a drawing go by between two looks at what has closed: a look costs about as much as a hundredth of a picture.
+// How many steps of a drawing go by between two looks at what has closed. A look waits for the driver, and reads a depth for each pixel.
 class LookRhythm {
 public:
-    // `steps`: of the drawing. Looks come 32 times, unless nothing closes: then ever less often, 8 times in the end.
+    // `steps`: of the drawing. Looks come 32 times, unless nothing closes: then ever less often, about 10 times.
     explicit LookRhythm(std::size_t steps) : least_((steps + 31) / 32), most_((steps + 7) / 8), step_(least_) {}
 
     std::size_t step() const { return step_; }

@@ -12,9 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include <glm/geometric.hpp>
+
 #include "render/grid_scene.hpp"
 #include "render/judge/grid_reference.hpp"
 #include "tests/support/differences.hpp"
+#include "tests/support/grids.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace cellproj::testing_support {
@@ -42,6 +45,30 @@ inline GridAxis uneven_axis(std::mt19937_64& random, std::size_t points) {
     GridAxis axis;
     for (double x = 0; axis.points() < points; x += std::pow(10, 0.5 * both(random)) / static_cast<double>(points)) axis.coordinates.push_back(x);
     return axis;
+}
+
+struct LitView {
+    GridScene scene;
+    Camera camera;
+    bool surfaces;
+};
+
+// A homogeneous medium in noise, whose gradient turns from cell to cell; by the number of the trial flat or smooth, on even or uneven axes,
+// with glass in it or without, some cells blanked or none.
+inline LitView lit_noise(int trial, Camera::Projection projection, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    const Shading shading = trial % 2 == 0 ? Shading::flat : Shading::smooth;
+    const bool uneven = trial / 2 % 2 == 1, surfaces = trial / 4 % 2 == 1;
+    const auto value = [&](const glm::dvec3&) { return unit(random); };
+    const GridAxis even = uniform_axis(0, 0.2, 6);
+    Grid grid = uneven ? grid_of({uneven_axis(random, 5), uneven_axis(random, 6), uneven_axis(random, 4)}, value) : grid_of({even, even, even}, value);
+    if (trial % 3 == 0) {
+        grid.blanked.assign(grid.cell_count(), 0);
+        for (auto& blanked : grid.blanked) blanked = unit(random) < 0.3 ? 1 : 0;
+    }
+    const Camera camera = frame_bounds(grid.bounds(), projection, {unit(random), -unit(random), unit(random)}, {0.1, 0.2, 1}, 1.2);
+    const double depth = 2 / glm::length(grid.bounds().high - grid.bounds().low);
+    return {lit(std::move(grid), constant_medium(depth), shading, two_lights, surfaces ? glass : std::vector<IsoSurface>{}), camera, surfaces};
 }
 
 // The largest error of all pixels. `tolerance`: where more is off, against what the judge sees within a thousandth of a pixel, too: a ray that just
