@@ -221,7 +221,9 @@ void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, cons
             traversal.begin_part(rhythm.step(), [&](const CellRange& brick) { return closed->hide(view.corners(brick)); });
             draw_part();
             if (traversal.slices_left() == 0) break;
+            const Stopwatch looking;
             rhythm.looked(closed->look(view.corners(traversal.rest())));
+            statistics.ms.draw += looking.ms();
             if (closed->all()) break;
         }
     } else {
