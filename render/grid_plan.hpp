@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "render/grid_renderer.hpp"
@@ -16,7 +17,13 @@ struct GridFacts {
     bool rays;                 // walk from cell to cell (CPU), or cells and slabs are drawn (OpenGL)
     std::size_t cells, drawn;  // of the grid, and those that are not left out
     bool medium;               // whether there is light between surfaces
+    bool front_to_back = false;  // OpenGL: what lies behind opaque tiles is left out
 };
+
+// The opacity above which what lies behind is left out: it would add less than 1e-4 to any channel. Nothing where rays are not expected to
+// come to it: the largest extinction all along the diagonal of the grid and two crossings of each isosurface do not suffice, or sums in float32
+// do not tell it from 1. `transfer`: of the scene, over scalars 0..1 and lengths of GridUnits.
+std::optional<float> hiding_opacity(const TransferFunction& transfer, const SurfaceScene* surfaces);
 
 // Cells, order, segments, surfaces, gradients and rays.
 std::vector<Decision> plan_of(const GridScene& scene, const GridQuality& quality, const GridFacts& facts);

@@ -37,8 +37,8 @@ void require_grid_cut(const GridQuality& quality, const RayCuts& cuts) {
 std::unique_ptr<GridRenderer> make_grid_renderer(Backend backend, const RendererOptions& options) {
     switch (backend) {
         case Backend::gl_osmesa:
-            return std::make_unique<gl::GlGridRenderer>(std::make_unique<gl::OsmesaContext>(options.osmesa_library));
-        case Backend::gl_egl: return std::make_unique<gl::GlGridRenderer>(std::make_unique<gl::EglContext>(options.egl_library));
+            return std::make_unique<gl::GlGridRenderer>(std::make_unique<gl::OsmesaContext>(options.osmesa_library), options.rules);
+        case Backend::gl_egl: return std::make_unique<gl::GlGridRenderer>(std::make_unique<gl::EglContext>(options.egl_library), options.rules);
         case Backend::cpu: break;
     }
     return cpu::make_grid_renderer(options.threads);

@@ -24,6 +24,7 @@ struct PlanRules {
     bool sum = true;               // nothing absorbs: no order
     bool few_cells = true;         // CPU: few cells are drawn: pixels sort what they meet instead of all cells being sorted
     bool constant_light = true;    // colour and extinction the same everywhere: a closed form instead of the method's tables and pieces
+    bool front_to_back = true;     // OpenGL, grids: what may become opaque is drawn front to back, until it is
 };
 
 }  // namespace cellproj

@@ -2,7 +2,9 @@
 //
 // Regular grids in OpenGL: what coherence pays, the ways to classify slabs, and WVG91's Table 3.
 //
-//   cellproj_grid_templates [SIDE [FRAMES]]     default: 512 3
+//   cellproj_grid_templates [SIDE [FRAMES [opaque]]]     default: 512 3
+//
+// "opaque": what it saves to draw front to back and stop behind opaque tiles, and nothing else.
 //
 // First EKE01's Fig. 9 and 10 in numbers, several slabs a polygon as RS00 draws them, and a cube of 64³ cells by its own cells and as
 // tetrahedra, by the same backend and method. Then every way to integrate and interpolate on three volumes (a distance field of 20³
@@ -34,6 +36,7 @@
 #include "render/judge/grid_reference.hpp"
 #include "render/grid_renderer.hpp"
 #include "render/renderer.hpp"
+#include "tests/support/differences.hpp"
 #include "tests/support/grids.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/spherical_harmonic.hpp"
@@ -230,6 +233,57 @@ void several_a_polygon(GridRenderer& renderer, ImageSize size, int frames) {
     }
 }
 
+// ---- Front to back ----
+
+struct OpaqueScene {
+    std::string name;
+    GridScene scene;
+    GridQuality quality;
+};
+
+std::vector<OpaqueScene> opaque_scenes() {
+    constexpr std::size_t n = 100;
+    const auto waves = std::make_shared<Grid>(testing_support::unit_cube(n, scenes::waves));
+    const auto medium = [](double least, double most) {
+        return std::make_shared<TransferFunction>(OpticalModel::density, std::vector<ColorNode>{{0, {0.1, 0.2, 0.9}}, {1, {1.0, 0.6, 0.0}}},
+                                                  std::vector<ExtinctionNode>{{0, least}, {1, most}});
+    };
+    const auto surfaces = [](std::vector<IsoSurface> list) {
+        return std::make_shared<SurfaceScene>(SurfaceScene{IsoSurfaces(std::move(list)), Shading::smooth});
+    };
+    const auto dense = medium(20, 80), clear = medium(0, 0), thin = medium(0.2, 4), patchy = medium(0, 40);
+    const GridScene in_dense{waves, dense};
+    std::vector<OpaqueScene> all{{"dense, integral", in_dense, {}}};
+    for (const char* method : {"preint2d:256", "homogeneous:vertices"}) all.push_back({std::string("dense, ") + method, in_dense, {.method = parse_method(method)}});
+    for (const char* sampling : {"object:200", "view:200:x4"})
+        all.push_back({std::string("dense, ") + sampling, in_dense, {.method = parse_method("preint2d:256"), .sampling = parse_grid_sampling(sampling)}});
+    all.push_back({"patchy, integral", {waves, patchy}, {}});
+    all.push_back({"thin, integral (back to front)", {waves, thin}, {}});
+    all.push_back({"surface at .5", {waves, clear, surfaces({{0.5, {1, 0.5, 0}, 1, {}}})}, {}});
+    all.push_back({"surface at .5 in thin", {waves, thin, surfaces({{0.5, {1, 0.5, 0}, 1, {}}})}, {}});
+    all.push_back({"the same, view:200", {waves, thin, surfaces({{0.5, {1, 0.5, 0}, 1, {}}})}, {.method = parse_method("preint2d:256"), .sampling = parse_grid_sampling("view:200")}});
+    all.push_back({"surface at .9 in thin", {waves, thin, surfaces({{0.9, {1, 0.5, 0}, 1, {}}})}, {}});
+    return all;
+}
+
+void front_to_back(ImageSize size, int frames) {
+    const auto stopped = make_grid_renderer(Backend::gl_osmesa);
+    const auto back_to_front = make_grid_renderer(Backend::gl_osmesa, {.rules = {.front_to_back = false}});
+    std::printf("100^3 cells, ms back to front : front to back\n  %-32s %9s %9s %7s %9s %9s\n", "", "b. to f.", "f. to b.", "ratio", "of cells", "apart");
+    for (const auto& [name, scene, quality] : opaque_scenes()) {
+        for (const Projection projection : {Projection::parallel, Projection::perspective}) {
+            const Camera camera = scenes::measured_view(0, {glm::dvec3(0), glm::dvec3(1)}, projection);
+            Image all, some;
+            Statistics of_all, of_some;
+            const double ms_all = median_ms(frames, [&] { all = back_to_front->render(scene, camera, size, quality, &of_all); });
+            const double ms_some = median_ms(frames, [&] { some = stopped->render(scene, camera, size, quality, &of_some); });
+            std::printf("  %-32s %9.1f %9.1f %7.2f %9.3f %9.1e\n", name.c_str(), ms_all, ms_some, ms_all / ms_some,
+                        static_cast<double>(of_some.counts.triangles) / static_cast<double>(of_all.counts.triangles), testing_support::max_difference(all, some));
+            std::fflush(stdout);
+        }
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -237,6 +291,11 @@ int main(int argc, char** argv) {
         const auto number = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
         const int side = number(1, 512), frames = number(2, 3);
         if (side < 1 || side > 16384 || frames < 1) throw std::invalid_argument("SIDE and FRAMES are numbers above 0");
+        if (argc > 3) {
+            if (argc > 4 || std::string(argv[3]) != "opaque") throw std::invalid_argument("the third argument is \"opaque\" or left out");
+            front_to_back({side, side}, frames);
+            return 0;
+        }
         const auto renderer = make_grid_renderer(Backend::gl_osmesa);
         classifications(*renderer, {side, side});
         several_a_polygon(*renderer, {side, side}, frames);

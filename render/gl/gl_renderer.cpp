@@ -252,7 +252,8 @@ void GlRenderer::draw_surfaces(const CellStream& cells, const ViewOrder& order, 
     const NearnessFrame frame = cells.nearness_frame();
     const bool medium = prepared_->has_medium();
     const Program& surfaces = programs_.of(shaders::surfaces_vert + (medium ? shader_->vertex_source() : shaders::no_cell_glsl),
-                                      shaders::surfaces_frag + shaders::reflected_glsl + (medium ? shaders::light_glsl + shader_->source() : ""),
+                                      shaders::surfaces_frag + shaders::reflected_glsl + (prepared_->lights_medium() ? shaders::lit_medium_glsl : "") +
+                                          (medium ? shaders::light_glsl + shader_->source() : ""),
                                       surfaces_->defines(frame.perspective, nearest) + (windows_ ? "#define WINDOW\n" : ""));
     surfaces_->bind(surfaces, cells, frame, {.nearest = nearest, .windowed = windows_.has_value()});
     if (windows_) windows_->bind(surfaces);

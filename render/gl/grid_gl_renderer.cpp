@@ -11,6 +11,7 @@
 
 #include "classify/segment_method.hpp"
 #include "mesh/error.hpp"
+#include "render/gl/grid_closed_tiles.hpp"
 #include "render/gl/grid_footprints.hpp"
 #include "render/gl/grid_slabs.hpp"
 #include "render/gl/grid_templates.hpp"
@@ -37,9 +38,8 @@ void require_grid_drawn(const GridQuality& quality, const GridShading& shading) 
     };
     if (shading.isosurfaces && quality.sampling.light != GridSampling::Light::segment)
         refuse("--sampling", "slabs by their two slices for isosurfaces", to_string(quality.sampling), "leave out pre or post");
-    if (shading.isosurfaces && !takes_surfaces(quality.method))
-        refuse("--method", "a method of light per pixel, blended once, for isosurfaces", to_string(quality.method), "leave it out");
-    if (shading.lit_medium) refuse("--shade-volume", "the CPU backend for the lit volume of a regular grid", "OpenGL", "use --backend cpu, or draw it as tetrahedra (--as tets)");
+    if ((shading.isosurfaces || shading.lit_medium) && !takes_surfaces(quality.method))
+        refuse("--method", "a method of light per pixel, blended once, for isosurfaces and lit media", to_string(quality.method), "leave it out");
     // Between two faces the scalar is a cubic; segments of this backend are linear.
     if (quality.method.kind == MethodKind::exact)
         refuse("--method", "one that OpenGL draws for a regular grid", to_string(quality.method),
@@ -62,11 +62,13 @@ void require_sliced(const Grid& grid, const GridSampling& sampling) {
     }
 }
 
-GlGridRenderer::GlGridRenderer(std::unique_ptr<Context> context)
+GlGridRenderer::GlGridRenderer(std::unique_ptr<Context> context, const PlanRules& rules)
     : context_(current(std::move(context))),
+      rules_(rules),
       indices_(0, {}),
       pairs_(make_triangle_stream<TemplatePair>()),
-      slabs_(make_triangle_stream<SlabVertex>()) {
+      slabs_(make_triangle_stream<SlabVertex>()),
+      outlines_(make_triangle_stream<OutlineVertex>()) {
     context_->release();
 }
 
@@ -94,13 +96,21 @@ void GlGridRenderer::prepare_here(const GridScene& scene, const GridQuality& qua
     if (!same_surfaces) {
         surfaces_.reset();
         scene_.surfaces.reset();
-        if (has_surfaces(scene)) surfaces_.emplace(scene, volume_->units());
+        if (has_surfaces(scene) || has_lit_medium(scene)) surfaces_.emplace(scene, volume_->units());
     }
     if (!same_surfaces || !same_transfer)
         volume_->set_light(*scene.grid, *scene.transfer, surfaces_ ? std::span(surfaces_->thresholds()) : std::span<const float>());
     scene_ = scene;
     const bool same_light = quality_.method == quality.method && quality_.sampling == quality.sampling;
     if (!same_transfer || !shader_ || !same_light) prepare_light(quality, same_grid);
+    // Formats of fewer digits round differently in each order, and do not tell opaque from nearly opaque.
+    const bool tells = quality.target == TargetFormat::rgba32f;
+    opaque_ = rules_.front_to_back && tells ? hiding_opacity(transfer_in_units(), scene_.surfaces.get()) : std::nullopt;
+}
+
+TransferFunction GlGridRenderer::transfer_in_units() const {
+    const GridUnits& units = volume_->units();
+    return in_scene_units(*scene_.transfer, units.scalar_low, units.scalar_high, units.length);
 }
 
 // Slabs: what most of them are that look along their normal, and the diagonal of the box, as slices may be seen edge-on.
@@ -113,8 +123,7 @@ GlGridRenderer::Lengths GlGridRenderer::segment_lengths(const GridSampling& samp
 }
 
 void GlGridRenderer::prepare_light(const GridQuality& quality, bool same_grid) {
-    const GridUnits& units = volume_->units();
-    const TransferFunction transfer = in_scene_units(*scene_.transfer, units.scalar_low, units.scalar_high, units.length);
+    const TransferFunction transfer = transfer_in_units();
     medium_ = transfer.visible(0.0, 1.0);
     auto shader = std::exchange(shader_, nullptr);  // no stale table behind a failure
     classified_ = {};
@@ -137,17 +146,20 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     cellproj::validate(size, "size");
     const CurrentContext current(*context_);
     prepare_here(scene, quality);
-    if (!target_.is(size, quality.target, false)) target_ = Target(size, quality.target, false);
+    if (!target_.is(size, quality.target, front_to_back())) target_ = Target(size, quality.target, front_to_back());
     statistics.ms.plan = total.ms();
 
     target_.clear_and_bind();
     blend_back_to_front();
     const GridView view(*scene.grid, volume_->units(), camera, size);
+    std::optional<ClosedTiles> tiles;
+    if (front_to_back()) tiles.emplace(view, target_, programs_, outlines_, *opaque_);
+    ClosedTiles* closed = tiles ? &*tiles : nullptr;
     volume_->values().bind(values_unit);
     const bool cells = quality.sampling.cut == GridSampling::Cut::cells;
     std::optional<DepthWindow> window;
     if (ray_cuts(scene).any()) window.emplace(scene, camera, size, volume_->units().length);
-    cells ? draw_cells(view, camera, window ? &*window : nullptr, statistics) : draw_slabs(view, statistics);
+    cells ? draw_cells(view, camera, window ? &*window : nullptr, closed, statistics) : draw_slabs(view, closed, statistics);
 
     const Stopwatch read_back;
     Image image = target_.read();
@@ -166,19 +178,21 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     statistics.backend_version = driver_version();
     statistics.order = cells ? "slices" : to_string(quality.sampling);
     statistics.order_exact = true;
-    statistics.plan = plan_of(scene, quality, {.rays = false, .cells = statistics.counts.cells, .drawn = statistics.counts.drawn, .medium = medium_});
+    statistics.plan = plan_of(scene, quality, {.rays = false, .cells = statistics.counts.cells, .drawn = statistics.counts.drawn, .medium = medium_, .front_to_back = front_to_back()});
     *out = std::move(statistics);
     return image;
 }
 
 GridLight GlGridRenderer::light() {
     if (!surfaces_) return {.shader = shader_.get()};
-    return {.shader = medium_ ? shader_.get() : nullptr,
+    const bool lit_medium = medium_ && has_lit_medium(scene_), lit = lit_medium || surfaces_->isosurfaces();
+    return {.shader = medium_ || !surfaces_->isosurfaces() ? shader_.get() : nullptr,
             .surfaces = &*surfaces_,
-            .gradients = surfaces_->smooth() ? &volume_->gradients(*scene_.grid) : nullptr};
+            .gradients = lit && surfaces_->smooth() ? &volume_->gradients(*scene_.grid) : nullptr,
+            .lit_medium = lit_medium};
 }
 
-void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, Statistics& statistics) {
+void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, ClosedTiles* closed, Statistics& statistics) {
     const std::string blending = blending_define(quality_.method);
     std::optional<const WindowTexture> kept;
     if (window) kept.emplace(*window, view.perspective() ? 0.0 : view.to_eye(glm::dvec3(0.0)).z, view.transform().size().width);
@@ -187,30 +201,46 @@ void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, cons
     if (light_at_vertices(quality_.method))
         templates.emplace(view, volume_->units(), *shader_, programs_, blending, footprints, indices_, pairs_);
 
-    GridTraversal traversal(*scene_.grid, camera.viewpoint(), volume_->drawn());
+    GridTraversal traversal(*scene_.grid, camera.viewpoint(), volume_->drawn(), closed ? largest_slice_first(view.forward()) : GridOrder{});
     std::vector<std::uint32_t> cells;
-    for (;;) {
-        const Stopwatch ordering;
-        traversal.next(cells_per_chunk, cells);
-        statistics.ms.sort += ordering.ms();
-        if (cells.empty()) break;
-        const Stopwatch drawing;
-        statistics.counts.triangles += templates ? templates->draw(cells) : footprints.draw(cells);
-        statistics.counts.drawn += cells.size();
-        statistics.ms.draw += drawing.ms();
+    const auto draw_part = [&] {
+        for (;;) {
+            const Stopwatch ordering;
+            traversal.next(cells_per_chunk, cells);
+            statistics.ms.sort += ordering.ms();
+            if (cells.empty()) return;
+            const Stopwatch drawing;
+            statistics.counts.triangles += templates ? templates->draw(cells) : footprints.draw(cells);
+            statistics.counts.drawn += cells.size();
+            statistics.ms.draw += drawing.ms();
+        }
+    };
+    if (closed) {
+        LookRhythm rhythm(traversal.slices_left());
+        for (;;) {
+            traversal.begin_part(rhythm.step(), [&](const CellRange& brick) { return closed->hide(view.corners(brick)); });
+            draw_part();
+            if (traversal.slices_left() == 0) break;
+            const Stopwatch looking;
+            rhythm.looked(closed->look(view.corners(traversal.rest())));
+            statistics.ms.draw += looking.ms();
+            if (closed->all()) break;
+        }
+    } else {
+        draw_part();
     }
     const Stopwatch finish;
     glFinish();
     statistics.ms.draw += finish.ms();
 }
 
-void GlGridRenderer::draw_slabs(const GridView& view, Statistics& statistics) {
+void GlGridRenderer::draw_slabs(const GridView& view, ClosedTiles* closed, Statistics& statistics) {
     const Stopwatch drawing;
     const bool pre = quality_.sampling.light == GridSampling::Light::pre;
     GridLight light = this->light();
     if (pre) light.shader = nullptr;
     statistics.counts.triangles = gl::draw_slabs(view, volume_->units(), quality_.sampling, light, pre ? &classified_ : nullptr, programs_,
-                                                 blending_define(quality_.method), slabs_);
+                                                 blending_define(quality_.method), slabs_, closed);
     statistics.counts.drawn = scene_.grid->cell_count();
     glFinish();
     statistics.ms.draw = drawing.ms();

@@ -9,6 +9,7 @@
 #include "project/camera.hpp"
 #include "render/depth_window.hpp"
 #include "render/gl/context.hpp"
+#include "render/gl/grid_closed_tiles.hpp"
 #include "render/gl/grid_surface_pass.hpp"
 #include "render/gl/grid_view.hpp"
 #include "render/gl/grid_volume.hpp"
@@ -27,7 +28,7 @@ void require_sliced(const Grid& grid, const GridSampling& sampling);
 
 class GlGridRenderer : public GridRenderer {
 public:
-    explicit GlGridRenderer(std::unique_ptr<Context> context);
+    explicit GlGridRenderer(std::unique_ptr<Context> context, const PlanRules& rules = {});
     ~GlGridRenderer() override;
 
     void prepare(const GridScene& scene, const GridQuality& quality) override;
@@ -37,17 +38,21 @@ public:
 private:
     void prepare_here(const GridScene& scene, const GridQuality& quality);
     void prepare_light(const GridQuality& quality, bool same_grid);
+    TransferFunction transfer_in_units() const;  // of scene_
     struct Lengths {
         double mean, longest;  // of segments [scene units]
     };
     Lengths segment_lengths(const GridSampling& sampling) const;
     GridLight light();
-    void draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, Statistics& statistics);
-    void draw_slabs(const GridView& view, Statistics& statistics);
+    // Front to back, if what is drawn may become opaque, until all of it is.
+    bool front_to_back() const { return opaque_.has_value(); }
+    void draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, ClosedTiles* closed, Statistics& statistics);
+    void draw_slabs(const GridView& view, ClosedTiles* closed, Statistics& statistics);
 
     std::unique_ptr<Context> context_;  // current during calls only
+    PlanRules rules_;
     Programs programs_;
-    TriangleStream indices_, pairs_, slabs_;
+    TriangleStream indices_, pairs_, slabs_, outlines_;
     Target target_;
     GridScene scene_;
     std::optional<GridVolume> volume_;
@@ -57,6 +62,7 @@ private:
     Texture classified_;  // where points are classified
     std::optional<GridSurfacePass> surfaces_;  // of scene_
     bool medium_ = true;                       // whether there is light between them
+    std::optional<float> opaque_;              // hiding_opacity of scene_, for quality_
 };
 
 }  // namespace cellproj::gl

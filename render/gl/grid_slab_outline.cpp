@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <tuple>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -50,6 +51,28 @@ std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
     for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], upper);
     hull.pop_back();  // the first point again
     return hull;
+}
+
+std::vector<glm::dvec2> outline_on_screen(const GridView& view, std::span<const glm::dvec3> corners) {
+    const ScreenTransform& transform = view.transform();
+    std::vector<glm::dvec2> places;
+    for (const glm::dvec3& corner : corners) {
+        const glm::dvec3 p = view.to_eye(corner);
+        if (view.perspective() && p.z < near_depth) {
+            const double width = transform.size().width, height = transform.size().height;
+            return {{0, 0}, {width, 0}, {width, height}, {0, height}};
+        }
+        const glm::dvec2 place = transform.to_screen(p);
+        for (const double x : {-outline_margin, outline_margin}) {
+            for (const double y : {-outline_margin, outline_margin}) places.push_back(place + glm::dvec2(x, y));
+        }
+    }
+    return convex_hull(std::move(places));
+}
+
+glm::vec2 clip_space(const GridView& view, const glm::dvec2& pixel) {
+    const ImageSize size = view.transform().size();
+    return 2.0 * pixel / glm::dvec2(size.width, size.height) - 1.0;
 }
 
 }  // namespace cellproj::gl

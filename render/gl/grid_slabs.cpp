@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -20,12 +19,6 @@ namespace cellproj::gl {
 namespace {
 
 constexpr unsigned int classified_unit = 10;  // shaders/grid_slab.frag
-
-// A slab with a corner nearer to the eye than this [scene units] may cover all of the picture.
-constexpr double near_depth = 1e-3;
-
-// The rasterizer rounds positions to 1/256 of a pixel; rays find out by themselves what of them lies inside.
-constexpr double margin = 1.0 / 64;
 
 constexpr std::array<VertexAttribute, 2> slab_attributes{{{0, 2, offsetof(SlabVertex, x)}, {1, 2, offsetof(SlabVertex, first)}}};
 
@@ -43,7 +36,7 @@ Slices slices_of(const GridView& view, const GridUnits& units, const GridSamplin
     constexpr double infinite = 1e300;
     const std::size_t axis = nearest_axis(view);
     const double thickness = slab_thickness(view.grid(), units, sampling, axis);
-    const glm::dvec3 forward(view.axes()[0].z, view.axes()[1].z, view.axes()[2].z);
+    const glm::dvec3 forward = view.forward();
     if (sampling.cut == GridSampling::Cut::view) {
         // About the middle of the box, wherever the eye is.
         const double first = glm::dot(forward, box.center()) - 0.5 * thickness * sampling.slabs;
@@ -56,62 +49,44 @@ Slices slices_of(const GridView& view, const GridUnits& units, const GridSamplin
     return {normal, box.low[a], thickness, sampling.slabs, view.perspective() ? -box.low[a] / thickness : far};
 }
 
-class SlabBatch {
-public:
-    SlabBatch(const GridView& view, const Bounds& box, const Slices& slices) : view_(view), box_(box), slices_(slices) {}
+// Slabs that one polygon draws: `count` of them from the slice `nearest` on, away from the eye.
+struct SlabGroup {
+    int nearest, direction, count;
 
-    // `slabs` from the slice `nearest` on, away from the eye.
-    void add(int nearest, int slabs, int direction) {
-        const int farthest = nearest + direction * slabs;
-        const auto corners = slab_corners(box_, slices_.normal, slices_.at(std::min(nearest, farthest)), slices_.at(std::max(nearest, farthest)));
-        const auto first = static_cast<std::uint32_t>(batch_.vertices.size());
-        const std::vector<glm::dvec2> outline = outline_of(corners);
-        if (outline.size() < 3) return;
-        const glm::dvec2 picture(view_.transform().size().width, view_.transform().size().height);
-        for (const glm::dvec2& pixel : outline) {
-            const glm::dvec2 place = 2.0 * pixel / picture - 1.0;
-            batch_.vertices.push_back({static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(nearest),
-                                       static_cast<float>(direction)});
-        }
-        for (std::uint32_t i = 2; i < outline.size(); ++i)
-            batch_.indices.insert(batch_.indices.end(), {first, first + i - 1, first + i});
-    }
-
-    const Triangles<SlabVertex>& triangles() const { return batch_; }
-
-private:
-    std::vector<glm::dvec2> outline_of(const std::vector<glm::dvec3>& corners) const {
-        const ScreenTransform& transform = view_.transform();
-        std::vector<glm::dvec2> places;
-        for (const glm::dvec3& corner : corners) {
-            const glm::dvec3 p = view_.to_eye(corner);
-            if (view_.perspective() && p.z < near_depth) {
-                const double width = transform.size().width, height = transform.size().height;
-                return {{0, 0}, {width, 0}, {width, height}, {0, height}};
-            }
-            const glm::dvec2 place = transform.to_screen(p);
-            for (const double x : {-margin, margin}) {
-                for (const double y : {-margin, margin}) places.push_back(place + glm::dvec2(x, y));
-            }
-        }
-        return convex_hull(std::move(places));
-    }
-
-    const GridView& view_;
-    const Bounds& box_;
-    const Slices& slices_;
-    Triangles<SlabVertex> batch_;
+    int farthest() const { return nearest + direction * count; }
+    int low() const { return std::min(nearest, farthest()); }
+    int high() const { return std::max(nearest, farthest()); }
 };
 
-Triangles<SlabVertex> back_to_front(const GridView& view, const Bounds& box, const Slices& slices, int per_polygon) {
-    SlabBatch batch(view, box, slices);
+std::vector<SlabGroup> groups_front_to_back(const Slices& slices, int per_polygon) {
     // The slabs from `own` on are seen from their low side, that of the eye among them; those before it from their high one.
     const int own = static_cast<int>(std::clamp(std::floor(slices.eye), 0.0, static_cast<double>(slices.count)));
-    const auto groups = [&](int slabs) { return (slabs + per_polygon - 1) / per_polygon; };
-    for (int g = groups(own); g-- > 0;) batch.add(own - g * per_polygon, std::min(per_polygon, own - g * per_polygon), -1);
-    const int above = slices.count - own;
-    for (int g = groups(above); g-- > 0;) batch.add(own + g * per_polygon, std::min(per_polygon, above - g * per_polygon), 1);
-    return batch.triangles();
+    std::vector<SlabGroup> groups;
+    for (int first = own; first < slices.count; first += per_polygon) groups.push_back({first, 1, std::min(per_polygon, slices.count - first)});
+    for (int first = own; first > 0; first -= per_polygon) groups.push_back({first, -1, std::min(per_polygon, first)});
+    return groups;
+}
+
+void append(const GridView& view, const Bounds& box, const Slices& slices, const SlabGroup& group, Triangles<SlabVertex>& batch) {
+    const auto corners = slab_corners(box, slices.normal, slices.at(group.low()), slices.at(group.high()));
+    const auto first = static_cast<std::uint32_t>(batch.vertices.size());
+    const std::vector<glm::dvec2> outline = outline_on_screen(view, corners);
+    if (outline.size() < 3) return;
+    for (const glm::dvec2& pixel : outline) {
+        const glm::vec2 place = clip_space(view, pixel);
+        batch.vertices.push_back({place.x, place.y, static_cast<float>(group.nearest), static_cast<float>(group.direction)});
+    }
+    for (std::uint32_t i = 2; i < outline.size(); ++i) batch.indices.insert(batch.indices.end(), {first, first + i - 1, first + i});
+}
+
+// Of all that lies in the groups.
+std::vector<glm::dvec3> corners_of(const Bounds& box, const Slices& slices, std::span<const SlabGroup> groups) {
+    int low = slices.count, high = 0;
+    for (const SlabGroup& group : groups) {
+        low = std::min(low, group.low());
+        high = std::max(high, group.high());
+    }
+    return slab_corners(box, slices.normal, slices.at(low), slices.at(high));
 }
 
 }  // namespace
@@ -134,7 +109,7 @@ double slab_thickness(const Grid& grid, const GridUnits& units, const GridSampli
 }
 
 std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const GridLight& light, const Texture* classified,
-                       Programs& programs, const std::string& defines, TriangleStream& stream) {
+                       Programs& programs, const std::string& defines, TriangleStream& stream, ClosedTiles* closed) {
     const std::string own = "#define SLABS " + std::to_string(sampling.per_polygon) + '\n' + (classified ? "#define PRE\n" : "") +
                             (sampling.light == GridSampling::Light::post ? "#define POST\n" : "");
     const Program& program = programs.of(shaders::grid_slab_vert + light.vertex_source(),
@@ -162,9 +137,30 @@ std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridS
     program.set("slice_normal", glm::vec3(slices.normal));
     program.set("slices", static_cast<float>(slices.first), static_cast<float>(slices.thickness));
     program.use();
-    const Triangles<SlabVertex> triangles = back_to_front(view, box, slices, sampling.per_polygon);
-    stream.draw(triangles);
-    return triangles.indices.size() / 3;
+    std::vector<SlabGroup> groups = groups_front_to_back(slices, sampling.per_polygon);
+    Triangles<SlabVertex> batch;
+    std::size_t triangles = 0;
+    const auto flush = [&] {
+        stream.draw(batch);
+        triangles += batch.indices.size() / 3;
+        batch.clear();
+    };
+    if (!closed) {
+        std::reverse(groups.begin(), groups.end());
+        for (const SlabGroup& group : groups) append(view, box, slices, group, batch);
+        flush();
+        return triangles;
+    }
+    LookRhythm rhythm(groups.size());
+    for (std::span<const SlabGroup> rest(groups); !rest.empty() && !closed->all();) {
+        const std::size_t some = std::min(rhythm.step(), rest.size());
+        for (const SlabGroup& group : rest.first(some)) append(view, box, slices, group, batch);
+        rest = rest.subspan(some);
+        program.use();
+        flush();
+        if (!rest.empty()) rhythm.looked(closed->look(corners_of(box, slices, rest)));
+    }
+    return triangles;
 }
 
 }  // namespace cellproj::gl

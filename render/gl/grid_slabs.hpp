@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A grid as slabs between slices (render/grid_sampling.hpp): polygons from back to front, each of which draws one slab or some that follow
+// A grid as slabs between slices (render/grid_sampling.hpp): polygons in the order of the view, each of which draws one slab or some that follow
 // each other. Slices of EKE01 and RS00 are textures in 2D, for each axis, or cut through one in 3D; here one in 3D serves both, and a slice
 // between two that the volume has is interpolated by the texture unit as RS00 does from the two.
 #pragma once
@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "render/gl/grid_closed_tiles.hpp"
 #include "render/gl/grid_surface_pass.hpp"
 #include "render/gl/grid_view.hpp"
 #include "render/gl/programs.hpp"
@@ -31,8 +32,9 @@ double slab_thickness(const Grid& grid, const GridUnits& units, const GridSampli
 // The axis that the view is closest to.
 std::size_t nearest_axis(const GridView& view);
 
-// Draws all. Returns the number of triangles. `classified`: GridSampling::Light::pre, at the points; else null.
+// Draws all from back to front or, with `closed`, from front to back what its tiles do not hide. Returns the number of triangles.
+// `classified`: GridSampling::Light::pre, at the points; else null.
 std::size_t draw_slabs(const GridView& view, const GridUnits& units, const GridSampling& sampling, const GridLight& light, const Texture* classified,
-                       Programs& programs, const std::string& defines, TriangleStream& stream);
+                       Programs& programs, const std::string& defines, TriangleStream& stream, ClosedTiles* closed);
 
 }  // namespace cellproj::gl

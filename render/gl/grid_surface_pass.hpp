@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Isosurfaces in the cells and slabs of a grid (shaders/grid_surfaces.glsl): what the scene's surfaces, lights and gradients are to the fragments.
+// Isosurfaces in the cells and slabs of a grid (shaders/grid_surfaces.glsl), and the light on them and on the medium
+// (shaders/grid_light.glsl): what the scene's surfaces, lights and gradients are to the fragments.
 #pragma once
 
 #include <string>
@@ -16,11 +17,12 @@ namespace cellproj::gl {
 
 class GridSurfacePass {
 public:
-    // Of a scene that has_surfaces, as they are now; it must outlive this.
+    // Of a scene that has_surfaces or has_lit_medium, as they are now; it must outlive this.
     GridSurfacePass(const GridScene& scene, const GridUnits& units);
 
     // Against scalars as fragments have them, ascending.
     const std::vector<float>& thresholds() const { return thresholds_; }
+    bool isosurfaces() const { return !thresholds_.empty(); }
     bool smooth() const { return scene_->shading == Shading::smooth; }
 
 private:
@@ -28,20 +30,26 @@ private:
     std::vector<float> thresholds_;
     Texture list_, lights_;
 
-    friend struct GridLight;
+    friend class GridLight;
 };
 
 // What the fragments of a grid show.
-struct GridLight {
+class GridLight {
+public:
     const SegmentShader* shader = nullptr;      // null: no medium, or one of another kind
-    const GridSurfacePass* surfaces = nullptr;  // null: none
-    const Texture* gradients = nullptr;         // of GridVolume, for surfaces that are smooth
+    const GridSurfacePass* surfaces = nullptr;  // null: none, and nothing is lit
+    const Texture* gradients = nullptr;         // of GridVolume, for what is smooth
+    bool lit_medium = false;                    // by `surfaces`
 
     std::string defines() const;
     const std::string& vertex_source() const;
     // Behind shaders/grid_rays.frag: `own`, which draws, with what it needs before and behind it.
     std::string fragment_source(const std::string& own) const;
     void bind(const Program& program) const;
+
+private:
+    bool isosurfaces() const { return surfaces && surfaces->isosurfaces(); }
+    bool lit() const { return surfaces && surfaces->scene_->shading != Shading::unlit && (isosurfaces() || lit_medium); }
 };
 
 }  // namespace cellproj::gl

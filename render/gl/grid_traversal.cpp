@@ -2,6 +2,7 @@
 #include "render/gl/grid_traversal.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cellproj::gl {
 
@@ -22,26 +23,69 @@ std::vector<std::uint32_t> cells_back_to_front(const GridAxis& axis, double eye,
     return sequence;
 }
 
-GridTraversal::GridTraversal(const Grid& grid, const Eye& eye, std::span<const std::uint8_t> drawn) : drawn_(drawn) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        sequences_[a] = cells_back_to_front(grid.axes[a], eye.xyz[axis], eye.at_infinity);
+GridOrder largest_slice_first(const glm::dvec3& forward) {
+    GridOrder order{.front_to_back = true};
+    std::stable_sort(order.axes.begin(), order.axes.end(), [&](std::size_t a, std::size_t b) {
+        return std::abs(forward[static_cast<int>(a)]) < std::abs(forward[static_cast<int>(b)]);
+    });
+    return order;
+}
+
+GridTraversal::GridTraversal(const Grid& grid, const Eye& eye, std::span<const std::uint8_t> drawn, const GridOrder& order)
+    : axes_(order.axes), drawn_(drawn) {
+    const std::size_t nx = grid.axes[0].cells(), ny = grid.axes[1].cells();
+    const std::array<std::size_t, 3> strides{1, nx, nx * ny};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t axis = axes_[i];
+        strides_[i] = strides[axis];
+        sequences_[i] = cells_back_to_front(grid.axes[axis], eye.xyz[static_cast<int>(axis)], eye.at_infinity);
+        if (order.front_to_back) std::reverse(sequences_[i].begin(), sequences_[i].end());
     }
+    end_ = sequences_[2].size();
 }
 
 void GridTraversal::next(std::size_t count, std::vector<std::uint32_t>& cells) {
     const auto& [x, y, z] = sequences_;
     auto& [i, j, k] = at_;
     cells.clear();
-    for (; k < z.size(); ++k, j = 0) {
+    for (; k < end_; ++k, j = 0) {
         for (; j < y.size(); ++j, i = 0) {
-            const std::size_t row = x.size() * (y[j] + y.size() * std::size_t{z[k]});
-            for (; i < x.size(); ++i) {
+            const std::size_t row = y[j] * strides_[1] + z[k] * strides_[2];
+            const std::uint8_t* hidden = hidden_.empty() ? nullptr : &hidden_[j / brick_side * bricks(0)];
+            while (i < x.size()) {
+                if (hidden && hidden[i / brick_side] != 0) {
+                    i = (i / brick_side + 1) * brick_side;
+                    continue;
+                }
                 if (cells.size() == count) return;
-                if (drawn_[row + x[i]]) cells.push_back(static_cast<std::uint32_t>(row + x[i]));
+                const std::size_t id = row + x[i] * strides_[0];
+                if (drawn_[id]) cells.push_back(static_cast<std::uint32_t>(id));
+                ++i;
             }
         }
     }
+}
+
+void GridTraversal::extend(CellRange& range, std::size_t axis, std::size_t begin, std::size_t end) const {
+    const auto& sequence = sequences_[axis];
+    const auto [low, high] = std::minmax_element(sequence.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                 sequence.begin() + static_cast<std::ptrdiff_t>(std::min(end, sequence.size())));
+    range.low[axes_[axis]] = *low;
+    range.high[axes_[axis]] = *high + std::size_t{1};
+}
+
+CellRange GridTraversal::brick(std::size_t i, std::size_t j) const {
+    CellRange range{};
+    extend(range, 0, i * brick_side, (i + 1) * brick_side);
+    extend(range, 1, j * brick_side, (j + 1) * brick_side);
+    extend(range, 2, at_[2], end_);
+    return range;
+}
+
+CellRange GridTraversal::rest() const {
+    CellRange range{};
+    for (std::size_t axis = 0; axis < 3; ++axis) extend(range, axis, axis == 2 ? at_[2] : 0, sequences_[axis].size());
+    return range;
 }
 
 }  // namespace cellproj::gl

@@ -46,6 +46,14 @@ double GridView::plane(std::size_t axis, std::size_t i) const {
     return (grid_.axes[axis].coordinates[i] - reference_[static_cast<int>(axis)]) / length_;
 }
 
+std::array<glm::dvec3, 8> GridView::corners(const CellRange& cells) const {
+    std::array<glm::dvec3, 8> corners;
+    for (std::size_t c = 0; c < 8; ++c) {
+        for (std::size_t axis = 0; axis < 3; ++axis) corners[c][static_cast<int>(axis)] = plane(axis, (c >> axis & 1U) != 0 ? cells.high[axis] : cells.low[axis]);
+    }
+    return corners;
+}
+
 glm::dvec3 GridView::to_eye(const glm::dvec3& place) const { return transform_.to_eye(place + (reference_ - eye_) / length_); }
 
 Bounds GridView::box_about_eye(const GridCell& cell) const {
@@ -75,7 +83,7 @@ void GridView::set_screen(const Program& program) const {
 
 void GridView::set_rays(const Program& program) const {
     set_screen(program);
-    const glm::dvec3 forward(axes_[0].z, axes_[1].z, axes_[2].z);
+    const glm::dvec3 forward = this->forward();
     // Parallel rays through constant cells ask for their length alone.
     if (perspective() || grid_.location == FieldLocation::points) program.set("axis_forward", glm::vec3(forward));
     if (perspective()) return;

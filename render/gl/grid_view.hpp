@@ -18,6 +18,11 @@
 
 namespace cellproj::gl {
 
+// Cells by their number along each axis, low ≤ i < high.
+struct CellRange {
+    std::array<std::size_t, 3> low, high;
+};
+
 class GridView {
 public:
     // `grid` must outlive this.
@@ -30,6 +35,10 @@ public:
     const std::array<glm::dvec3, 3>& axes() const { return axes_; }
     // Plane i of an axis, about the reference point or about the eye [scene units].
     double plane(std::size_t axis, std::size_t i) const;
+    // Of the box of some cells, about the reference point.
+    std::array<glm::dvec3, 8> corners(const CellRange& cells) const;
+    // Into the picture, in the axes of the grid.
+    glm::dvec3 forward() const { return {axes_[0].z, axes_[1].z, axes_[2].z}; }
     // Of a place about the reference point.
     glm::dvec3 to_eye(const glm::dvec3& place) const;
     Bounds box_about_eye(const GridCell& cell) const;

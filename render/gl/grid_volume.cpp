@@ -18,6 +18,9 @@ namespace cellproj::gl {
 
 namespace {
 
+// The length of any such gradient over the weak one (classify/lighting.hpp) has a square in float32.
+constexpr float steepest = 1e15F;
+
 template <class Body>
 void for_all(std::size_t count, std::size_t grain, Body body) {
     using Range = oneapi::tbb::blocked_range<std::size_t>;
@@ -76,7 +79,7 @@ const Texture& GridVolume::gradients(const Grid& grid) {
     const std::vector<glm::vec3> kept = kept_gradients(grid, units_);
     std::vector<float> texels(4 * kept.size());
     for_all(kept.size(), 65536, [&](std::size_t i) {
-        for (int axis = 0; axis < 3; ++axis) texels[4 * i + static_cast<std::size_t>(axis)] = kept[i][axis];
+        for (int axis = 0; axis < 3; ++axis) texels[4 * i + static_cast<std::size_t>(axis)] = std::clamp(kept[i][axis], -steepest, steepest);
     });
     const GridDimensions n = grid.dimensions();
     return gradients_.emplace(Texture::volume({n.ni, n.nj, n.nk}, texels));

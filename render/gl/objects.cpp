@@ -54,6 +54,13 @@ GLenum internal_format(TargetFormat format) {
     return GL_NONE;
 }
 
+void blend(GLenum of_new, GLenum of_old) {
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(of_new, of_old);
+}
+
 }  // namespace
 
 void delete_buffer(unsigned int name) { glDeleteBuffers(1, &name); }
@@ -117,6 +124,19 @@ Image Target::read() const {
     return image;
 }
 
+void Target::bind_color(unsigned int unit) const {
+    glTextureBarrier();
+    glBindTextureUnit(unit, color_.name());
+}
+
+void Target::clear_depths(float depth) const { glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, &depth); }
+
+std::vector<float> Target::read_depths() const {
+    std::vector<float> depths(static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height));
+    glGetTextureImage(depth_.name(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, static_cast<GLsizei>(depths.size() * sizeof(GLfloat)), depths.data());
+    return depths;
+}
+
 Program::Program(const std::string& vertex, const std::string& fragment, const std::string& defines) {
     const GLuint vertex_shader = compile(GL_VERTEX_SHADER, vertex, defines);
     const GLuint fragment_shader = compile(GL_FRAGMENT_SHADER, fragment, defines);
@@ -159,12 +179,8 @@ void Program::set(const char* uniform, const glm::vec4& value) const {
     glProgramUniform4f(program_.name(), location(uniform), value.x, value.y, value.z, value.w);
 }
 
-void blend_back_to_front() {
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-}
+void blend_back_to_front() { blend(GL_ONE, GL_ONE_MINUS_SRC_ALPHA); }
+void blend_front_to_back() { blend(GL_ONE_MINUS_DST_ALPHA, GL_ONE); }
 
 void check_errors(const char* where) {
     const GLenum error = glGetError();

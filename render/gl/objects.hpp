@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -70,6 +71,11 @@ public:
     }
     void clear_and_bind() const;  // transparent black, depth 0; viewport set
     Image read() const;           // waits for the drawing to end
+    // With depths, between drawings: what has been drawn so far as a texture for drawings that write no colour; the depths anew; and as they
+    // are, row by row, when the drawing has ended.
+    void bind_color(unsigned int unit) const;
+    void clear_depths(float depth) const;
+    std::vector<float> read_depths() const;
 
 private:
     ImageSize size_{0, 0};
@@ -96,8 +102,9 @@ private:
     Object<delete_program> program_;
 };
 
-// The blending of associated colours, back to front, without a depth test.
+// The blending of associated colours, without a depth test.
 void blend_back_to_front();
+void blend_front_to_back();
 
 // Throws Error (environment) when an OpenGL call since the last check failed; `where` says what was being done.
 void check_errors(const char* where);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One ray segment inside a cell of a grid: the ray cut by the cell's planes. Neighbours compute the same place on the plane between them
-// from the same numbers, so that segments follow each other without gap or overlap. Behind grid_rays.frag; the method's file, behind
-// this one, says what light a segment gives.
+// from the same numbers, so that segments follow each other without gap or overlap. Behind grid_rays.frag and grid_light.glsl; the method's
+// file, behind this one, says what light a segment gives.
 //   SURFACES  rays are cut at all places where the trilinear scalar passes an isovalue (grid_surfaces.glsl)
 flat in vec3 v_low, v_high, v_inverse_edges;
 flat in vec4 v_bottom, v_top;
@@ -39,25 +39,14 @@ float scalar_at(vec3 place) {
 }
 #endif
 
-#ifdef SURFACES
-flat in vec3 v_cell;  // its place in the grid
-
-const int root_steps = 14;
-
-// The trilinear scalar at u. On a face it is one number for both cells: the shares of what lies across are exactly 0.
-float scalar_in_cell(vec3 u) {
-    precise vec4 slice = (1.0 - u.z) * v_bottom + u.z * v_top;
-    precise vec2 row = (1.0 - u.y) * slice.xy + u.y * slice.zw;
-    precise float s = (1.0 - u.x) * row.x + u.x * row.y;
-    return s;
-}
-
 vec3 place_in_cell(Ray ray, float t) {
     precise vec3 u = (ray.origin + t * ray.direction - v_low) * v_inverse_edges;
     return clamp(u, 0.0, 1.0);
 }
 
 #ifdef LIT
+flat in vec3 v_cell;  // its place in the grid
+
 vec3 gradient_in_cell(vec3 u) {
 #ifdef SMOOTH
     return texture(gradients, (v_cell + u + 0.5) / vec3(textureSize(gradients, 0))).rgb;
@@ -68,6 +57,26 @@ vec3 gradient_in_cell(vec3 u) {
 #endif
 }
 #endif
+
+// What of its light the medium sends to the eye, from where the ray enters to where it leaves.
+void find_shares(Ray ray, vec2 inside) {
+#ifdef LIT_MEDIUM
+    vec3 to_eye = -ray.direction / ray.stretch;
+    share_in_front = lit_share(per_weak_gradient * gradient_in_cell(place_in_cell(ray, inside.x)), to_eye);
+    share_behind = lit_share(per_weak_gradient * gradient_in_cell(place_in_cell(ray, inside.y)), to_eye);
+#endif
+}
+
+#ifdef SURFACES
+const int root_steps = 14;
+
+// The trilinear scalar at u. On a face it is one number for both cells: the shares of what lies across are exactly 0.
+float scalar_in_cell(vec3 u) {
+    precise vec4 slice = (1.0 - u.z) * v_bottom + u.z * v_top;
+    precise vec2 row = (1.0 - u.y) * slice.xy + u.y * slice.zw;
+    precise float s = (1.0 - u.x) * row.x + u.x * row.y;
+    return s;
+}
 
 // Along the ray the scalar is a cubic, from its value at the front on: slope, square, cube.
 float cubic_at(float start, vec3 c, float x) { return ((c.z * x + c.y) * x + c.x) * x + start; }
@@ -116,7 +125,7 @@ vec4 light_of_cut_cell(Ray ray, vec2 inside, float s_front, float s_back) {
             vec4 about = texelFetch(surfaces, surface);
             float x = root_of(s_front, c, about.y, max(at, begin), end, rising);
 #ifdef MEDIUM
-            sum += (1.0 - sum.a) * light_of_segment(s_at, about.y, (x - at) * segment);
+            sum += (1.0 - sum.a) * lit(light_of_segment(s_at, about.y, (x - at) * segment), at, x);
 #endif
             vec4 layer = layer_of(surface, rising);
 #ifdef LIT
@@ -130,7 +139,7 @@ vec4 light_of_cut_cell(Ray ray, vec2 inside, float s_front, float s_back) {
         begin = end;
     }
 #ifdef MEDIUM
-    sum += (1.0 - sum.a) * light_of_segment(s_at, s_back, (1.0 - at) * segment);
+    sum += (1.0 - sum.a) * lit(light_of_segment(s_at, s_back, (1.0 - at) * segment), at, 1.0);
 #endif
     return sum;
 }
@@ -144,6 +153,7 @@ void main() {
     bvec3 up = lessThan(crossings.low, crossings.high);
     vec3 u_front = mix(place_in_cell(ray, inside.x), 1.0 - vec3(up), equal(nearer, vec3(inside.x)));
     vec3 u_back = mix(place_in_cell(ray, inside.y), vec3(up), equal(farther, vec3(inside.y)));
+    find_shares(ray, inside);
     light = light_of_cut_cell(ray, inside, scalar_in_cell(u_front), scalar_in_cell(u_back));
 }
 #else
@@ -152,7 +162,8 @@ void main() {
     vec2 inside = kept_of(part_between(ray, v_low, v_high));
     if (!(inside.x < inside.y)) discard;
     float s_front = scalar_at(ray.origin + inside.x * ray.direction), s_back = scalar_at(ray.origin + inside.y * ray.direction);
-    light = light_of_segment(s_front, s_back, (inside.y - inside.x) * ray.stretch);
+    find_shares(ray, inside);
+    light = lit(light_of_segment(s_front, s_back, (inside.y - inside.x) * ray.stretch), 0.0, 1.0);
 #ifdef HALF_OPACITY  // three passes in one: classify/half_opacity.hpp
     light *= vec4(vec3(1.0 - 0.5 * light.a), 1.0 - 0.25 * light.a);
 #endif

@@ -3,7 +3,7 @@
 // square (vertex = cell), else a rectangle (vertex = 4 * cell + corner). Behind grid_place.vert.
 flat out vec3 v_low, v_high, v_inverse_edges;
 flat out vec4 v_bottom, v_top;
-#ifdef SURFACES
+#ifdef LIT
 flat out vec3 v_cell;
 #endif
 
@@ -65,7 +65,7 @@ void main() {
 #endif
     v_low = box.low;
     v_high = box.high;
-#ifdef SURFACES
+#ifdef LIT
     v_cell = vec3(box.cell);
 #endif
     v_inverse_edges = 1.0 / (box.high - box.low);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The segments of a ray in some slabs of a grid, from front to back: EKE01 section 4.2. Each is cut by the box of the grid, so that the first
 // and the last are as long as they are. Slices that two slabs share are looked up once. Behind
-// grid_rays.frag; light.glsl and the method's file are behind this one.
+// grid_rays.frag and grid_light.glsl; light.glsl and the method's file are behind this one.
 //   SURFACES  a slab is cut where isosurfaces cross it (grid_surfaces.glsl)
 flat in vec2 v_slabs;
 
@@ -41,7 +41,6 @@ vec4 light_of_slab(vec3 front, vec3 back, float s_front, float s_back, float seg
 }
 #endif
 
-#ifdef SURFACES
 #ifdef LIT
 vec3 gradient_at(vec3 place) {
     vec3 at = place * point_scale + point_offset;
@@ -60,6 +59,12 @@ vec3 gradient_at(vec3 place) {
 }
 #endif
 
+#ifdef LIT_MEDIUM
+// What the medium of a slice sends to the eye.
+vec3 share_at(vec3 place, vec3 to_eye) { return lit_share(per_weak_gradient * gradient_at(place), to_eye); }
+#endif
+
+#ifdef SURFACES
 // What a slab shows that surfaces cut.
 vec4 light_of_cut_slab(vec3 front, vec3 back, float s_front, float s_back, float segment, vec3 to_eye) {
     int k = rank(s_front), end = rank(s_back);
@@ -73,7 +78,7 @@ vec4 light_of_cut_slab(vec3 front, vec3 back, float s_front, float s_back, float
         float share = crossed && s_front != s_back ? clamp((about.y - s_front) / (s_back - s_front), at, 1.0) : 1.0;
 #ifdef MEDIUM
         float s_here = crossed ? clamp(about.y, min(s_front, s_back), max(s_front, s_back)) : s_back;
-        sum += (1.0 - sum.a) * light_of_slab(front, back, s_at, s_here, (share - at) * segment);
+        sum += (1.0 - sum.a) * lit(light_of_slab(front, back, s_at, s_here, (share - at) * segment), at, share);
         s_at = s_here;
 #endif
         if (!crossed) break;
@@ -114,6 +119,10 @@ void main() {
 #else
     float s = scalar_at(place);
 #endif
+    vec3 to_eye = -ray.direction / ray.stretch;
+#ifdef LIT_MEDIUM
+    vec3 share = share_at(place, to_eye);
+#endif
     for (int k = 1; k <= SLABS; ++k) {
         float next_t = crossing(v_slabs.x + float(k) * v_slabs.y, start, inverse, inside);
         vec3 next_place = place_on(ray, next_t);
@@ -124,11 +133,17 @@ void main() {
 #endif
         // Rays towards the other side of the eye end in its slab.
         bool away = next_t >= t;
+#ifdef LIT_MEDIUM
+        vec3 next_share = share_at(next_place, to_eye);
+        share_in_front = away ? share : next_share;
+        share_behind = away ? next_share : share;
+        share = next_share;
+#endif
 #ifdef SURFACES
         vec4 slab = light_of_cut_slab(away ? place : next_place, away ? next_place : place, away ? s : next_s, away ? next_s : s,
-                                      abs(next_t - t) * ray.stretch, -ray.direction / ray.stretch);
+                                      abs(next_t - t) * ray.stretch, to_eye);
 #else
-        vec4 slab = light_of_slab(place, next_place, away ? s : next_s, away ? next_s : s, abs(next_t - t) * ray.stretch);
+        vec4 slab = lit(light_of_slab(place, next_place, away ? s : next_s, away ? next_s : s, abs(next_t - t) * ray.stretch), 0.0, 1.0);
 #endif
 #ifdef HALF_OPACITY  // three passes in one: classify/half_opacity.hpp
         slab *= vec4(vec3(1.0 - 0.5 * slab.a), 1.0 - 0.25 * slab.a);

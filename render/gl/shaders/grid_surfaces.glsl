@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The isosurfaces of a grid, in front of grid_cell.frag and grid_slab.frag.
+// The isosurfaces of a grid, behind grid_light.glsl, in front of grid_cell.frag and grid_slab.frag.
 //   MEDIUM  there is light between them
-//   LIT     surfaces are shaded by the gradient of the trilinear scalar or
-//   SMOOTH  by that of the points, trilinear in between
 // The rank of a scalar is how many isovalues it is not below: what two places differ by lies between them. A scalar that is the isovalue is on
 // one side of it, so that neither two segments that follow each other show the same crossing (the double hit of EKE01 section 5.2) nor
 // one falls between them.
 layout(binding = 11) uniform samplerBuffer surfaces;  // three each: threshold, isovalue, opacity; front; back: associated colour, opacity
-layout(binding = 12) uniform sampler3D gradients;     // at points
 uniform float surface_count;
 
 int rank(float s) {
@@ -25,7 +22,3 @@ int surface_behind(int k, bool rising) { return 3 * max(rising ? k : k - 1, 0); 
 
 // As it is seen, unlit.
 vec4 layer_of(int surface, bool rising) { return texelFetch(surfaces, surface + (rising ? 1 : 2)); }
-
-#ifdef LIT
-vec3 reflected(vec3 gradient, vec3 to_eye);  // reflected.glsl
-#endif

@@ -90,20 +90,8 @@ vec3 reflected(vec3 gradient, vec3 to_eye);  // reflected.glsl
 #ifdef MEDIUM
 #ifdef LIT_MEDIUM
 vec3 share_in_front, share_behind;  // what of its light the medium sends to the eye, linear between
-
-// classify/lighting.hpp, by a gradient over the weak one.
-vec3 lit_share(vec3 gradient, vec3 to_eye) {
-    float square = min(dot(gradient, gradient), 1e30);
-    return mix(vec3(1.0), reflected(gradient, to_eye), square / (1.0 + square));
-}
-
-// Light that grows linearly along a homogeneous segment of optical depth D is, in the mean, what it is at 1/D - 1/(e^D - 1) of the way
-// (render/cpu/medium_light-inl.hpp). `from`, `to`: of the way through the cell.
-vec4 lit(vec4 light, float from, float to) {
-    float passed = max(1.0 - light.a, 1e-30), depth = -log(passed);
-    float place = depth < 0.5 ? 0.5 - depth * (1.0 / 12.0 - depth * depth / 720.0) : 1.0 / depth - passed / light.a;
-    return vec4(light.rgb * mix(share_in_front, share_behind, mix(from, to, place)), light.a);
-}
+vec3 lit_share(vec3 gradient, vec3 to_eye);  // lit_medium.glsl
+vec4 lit(vec4 light, float from, float to);
 #else
 vec4 lit(vec4 light, float from, float to) { return light; }
 #endif
