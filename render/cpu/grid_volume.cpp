@@ -94,7 +94,20 @@ GridVolume::GridVolume(const Grid& grid, const GridUnits& units)
             axis.per_width.push_back(width > 0 ? 1.0F / width : 0.0F);
         }
     }
+    if (!constant_) add_turned_values(n);
     find_ranges(grid);
+}
+
+// Behind the values, slice by slice, with rows and columns exchanged: neighbours along y stand side by side as well (grid_walk-inl.hpp).
+void GridVolume::add_turned_values(const GridDimensions& n) {
+    turned_ = static_cast<std::int32_t>(values_.size());
+    values_.resize(2 * values_.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, n.nk, [&](std::size_t k) {
+        const float* from = &values_[n.ni * n.nj * k];
+        float* to = &values_[n.ni * n.nj * (n.nk + k)];
+        for (std::size_t i = 0; i < n.ni; ++i)
+            for (std::size_t j = 0; j < n.nj; ++j) *to++ = from[i + n.ni * j];
+    });
 }
 
 void GridVolume::find_ranges(const Grid& grid) {
@@ -188,12 +201,14 @@ GridCells GridVolume::cells() const {
     std::int32_t cell_stride = 1, brick_stride = 1;
     for (std::size_t a = 0; a < 3; ++a) {
         const Axis& axis = axes_[a];
-        grid.axes[a] = {cell_counts_[a], value_strides_[a], cell_stride, brick_stride,
+        const std::int32_t turned_stride = a == 0 ? cell_counts_[1] + 1 : a == 1 ? 1 : value_strides_[2];
+        grid.axes[a] = {cell_counts_[a], value_strides_[a], turned_stride, cell_stride, brick_stride,
                         axis.planes.empty() ? nullptr : axis.planes.data(), axis.per_width.empty() ? nullptr : axis.per_width.data()};
         cell_stride *= cell_counts_[a];
         brick_stride *= static_cast<std::int32_t>(levels_[0].bricks[a]);
     }
     grid.values = values_.data();
+    grid.turned = turned_;
     grid.constant = constant_;
     grid.present = present_.empty() ? nullptr : present_.data();
     grid.empty = leaps_ ? empty_.data() : nullptr;

@@ -52,6 +52,7 @@ private:
         std::vector<float> planes, per_width;  // none when all axes are uniform
     };
 
+    void add_turned_values(const GridDimensions& n);
     void find_ranges(const Grid& grid);
     void find_ray(const glm::dvec3& origin, const glm::dvec3& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const;
 
@@ -61,6 +62,7 @@ private:
     std::array<Axis, 3> axes_;
     std::array<std::int32_t, 3> cell_counts_, value_strides_;
     std::vector<float> values_, present_;
+    std::int32_t turned_ = 0;  // where in values_ they stand once more, turned; 0 for values of cells
     std::array<Level, brick_levels> levels_;
     std::vector<float> isovalues_;
     std::vector<std::int32_t> empty_, crossed_;  // per brick of the first level

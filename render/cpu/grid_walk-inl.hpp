@@ -48,7 +48,9 @@ public:
             const auto upwards = hn::RebindMask(di_, up);
             const auto stride = [&](std::int32_t n) HWY_ATTR { return hn::IfThenElse(upwards, hn::Set(di_, n), hn::Set(di_, -n)); };
             axis.next_value = stride(grid.axes[a].value_stride);
+            axis.next_turned = stride(grid.axes[a].turned_stride);
             axis.next_cell = stride(grid.axes[a].cell_stride);
+            axis.to_exit = hn::IfThenElseZero(upwards, hn::Set(di_, a == 0 ? grid.axes[a].turned_stride : grid.axes[a].value_stride));
             axis.first = hn::IfThenElse(moves, uniform ? hn::Mul(hn::Sub(axis.up, axis.origin), axis.inverse) : hn::Zero(d), hn::Set(d, never));
             const V last = hn::Set(d, static_cast<float>(grid.axes[a].cells - 1));
             axis.cell = cell_at(a, axis.origin, hn::Zero(d), last);
@@ -113,7 +115,8 @@ protected:
         V first;                       // uniform: where plane `up` is crossed; otherwise 0; `never` without direction
         V up, step;                    // 1 and 1 towards higher cells, 0 and −1 towards lower ones
         V cell;                        // a whole number
-        VI next_value, next_cell;      // from a cell's ids to those of the next one
+        VI to_exit;                    // from a cell's value to the lowest of the face where the ray leaves; along x of the turned ones
+        VI next_value, next_turned, next_cell;  // from a cell's ids to those of the next one
     };
 
     // The way out of a cell.
@@ -137,16 +140,18 @@ protected:
     HWY_INLINE void advance(const Ahead& ahead) {
         t_ = ahead.leave;
         active_ = hn::AndNot(ahead.last, active_);
-        VI next_value = hn::Zero(di_), next_cell = hn::Zero(di_);
+        VI next_value = hn::Zero(di_), next_turned = hn::Zero(di_), next_cell = hn::Zero(di_);
         const M crossed[3]{ahead.by_x, ahead.by_y, hn::Not(hn::Or(ahead.by_x, ahead.by_y))};
         for (std::size_t a = 0; a < 3; ++a) {
             Axis& axis = axes_[a];
             const M moves = hn::And(crossed[a], active_);
             axis.cell = hn::Add(axis.cell, hn::IfThenElseZero(moves, axis.step));
             next_value = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_value, next_value);
+            next_turned = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_turned, next_turned);
             if (grid_.present) next_cell = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_cell, next_cell);
         }
         value_id_ = hn::Add(value_id_, next_value);
+        turned_id_ = hn::Add(turned_id_, next_turned);
         if (grid_.present) cell_id_ = hn::Add(cell_id_, next_cell);
     }
 
@@ -183,10 +188,12 @@ protected:
 
     HWY_INLINE void find_ids() {
         value_id_ = hn::Zero(di_);
+        turned_id_ = hn::Set(di_, grid_.turned);
         cell_id_ = hn::Zero(di_);
         for (std::size_t a = 0; a < 3; ++a) {
             const VI cell = hn::ConvertTo(di_, axes_[a].cell);
             value_id_ = hn::Add(value_id_, hn::Mul(cell, hn::Set(di_, grid_.axes[a].value_stride)));
+            turned_id_ = hn::Add(turned_id_, hn::Mul(cell, hn::Set(di_, grid_.axes[a].turned_stride)));
             if (grid_.present) cell_id_ = hn::Add(cell_id_, hn::Mul(cell, hn::Set(di_, grid_.axes[a].cell_stride)));
         }
     }
@@ -201,17 +208,15 @@ protected:
         const M by_x = ahead.by_x, by_y = ahead.by_y;
         const V t = hn::Min(ahead.leave, ahead.nearest);
         const V ux = fraction(0, t), uy = fraction(1, t), uz = fraction(2, t);
-        const auto stride = [&](std::size_t a) HWY_ATTR { return hn::Set(di_, grid_.axes[a].value_stride); };
-        const auto ix = hn::RebindMask(di_, by_x), iy = hn::RebindMask(di_, by_y);
         const M by_z = hn::Not(hn::Or(by_x, by_y));
-        const auto iz = hn::RebindMask(di_, by_z);
-        const V up = hn::IfThenElse(by_x, axes_[0].up, hn::IfThenElse(by_y, axes_[1].up, axes_[2].up));
-        const VI across = hn::IfThenElse(ix, stride(0), hn::IfThenElse(iy, stride(1), stride(2)));
-        const VI first = hn::IfThenElse(ix, stride(1), stride(0)), second = hn::IfThenElse(iz, stride(1), stride(2));
         const V u = in_unit(hn::IfThenElse(by_x, uy, ux)), v = in_unit(hn::IfThenElse(by_z, uy, uz));
-        const VI corner = hn::Add(value_id_, hn::IfThenElseZero(hn::RebindMask(di_, hn::Gt(up, hn::Zero(d_))), across));
-        const VI opposite = hn::Add(corner, second);
-        const V c0 = value(corner), c1 = value(hn::Add(corner, first)), c2 = value(opposite), c3 = value(hn::Add(opposite, first));
+        // Pairs along x, of a face across x along y.
+        const auto ix = hn::RebindMask(di_, by_x), iy = hn::RebindMask(di_, by_y), iz = hn::RebindMask(di_, by_z);
+        const VI low = hn::IfThenElse(ix, turned_id_, value_id_);
+        const VI corner = hn::Add(low, hn::IfThenElse(ix, axes_[0].to_exit, hn::IfThenElse(iy, axes_[1].to_exit, axes_[2].to_exit)));
+        const VI across = hn::IfThenElse(iz, hn::Set(di_, grid_.axes[1].value_stride), hn::Set(di_, grid_.axes[2].value_stride));
+        const auto [c0, c1] = load_pairs(d_, grid_.values, corner);
+        const auto [c2, c3] = load_pairs(d_, grid_.values, hn::Add(corner, across));
         V scalar = between(between(c0, c1, u), between(c2, c3, u), v);
         if constexpr (bounded) {
             const V least = hn::Min(hn::Min(c0, c1), hn::Min(c2, c3)), most = hn::Max(hn::Max(c0, c1), hn::Max(c2, c3));
@@ -330,7 +335,7 @@ protected:
     Axis axes_[3];
     V t_, t_end_, length_, scalar_;
     bool cut_;
-    VI value_id_, cell_id_;
+    VI value_id_, turned_id_, cell_id_;
     M active_;
 };
 
