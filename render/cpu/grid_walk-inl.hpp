@@ -140,19 +140,22 @@ protected:
     HWY_INLINE void advance(const Ahead& ahead) {
         t_ = ahead.leave;
         active_ = hn::AndNot(ahead.last, active_);
-        VI next_value = hn::Zero(di_), next_turned = hn::Zero(di_), next_cell = hn::Zero(di_);
-        const M crossed[3]{ahead.by_x, ahead.by_y, hn::Not(hn::Or(ahead.by_x, ahead.by_y))};
+        const M by_x = hn::And(ahead.by_x, active_), by_y = hn::And(ahead.by_y, active_), crossed[3]{by_x, by_y, hn::AndNot(hn::Or(by_x, by_y), active_)};
         for (std::size_t a = 0; a < 3; ++a) {
             Axis& axis = axes_[a];
-            const M moves = hn::And(crossed[a], active_);
-            axis.cell = hn::Add(axis.cell, hn::IfThenElseZero(moves, axis.step));
-            next_value = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_value, next_value);
-            next_turned = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_turned, next_turned);
-            if (grid_.present) next_cell = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_cell, next_cell);
+            const auto moves = hn::RebindMask(di_, crossed[a]);
+            axis.cell = add_where(d_, crossed[a], axis.cell, axis.step);
+            value_id_ = add_where(di_, moves, value_id_, axis.next_value);
+            turned_id_ = add_where(di_, moves, turned_id_, axis.next_turned);
+            if (grid_.present) cell_id_ = add_where(di_, moves, cell_id_, axis.next_cell);
         }
-        value_id_ = hn::Add(value_id_, next_value);
-        turned_id_ = hn::Add(turned_id_, next_turned);
-        if (grid_.present) cell_id_ = hn::Add(cell_id_, next_cell);
+    }
+
+    // Sets of instructions with masks add where one is set, others add 0.
+    template <class DT>
+    static HWY_INLINE hn::Vec<DT> add_where(DT dt, hn::Mask<DT> where, hn::Vec<DT> a, hn::Vec<DT> b) {
+        (void)dt;
+        return HWY_TARGET == HWY_AVX3 ? hn::IfThenElse(where, hn::Add(a, b), a) : hn::Add(a, hn::IfThenElseZero(where, b));
     }
 
     // Where the ray crosses the plane ahead, at the end of these cells.
@@ -209,7 +212,11 @@ protected:
         const V t = hn::Min(ahead.leave, ahead.nearest);
         const V ux = fraction(0, t), uy = fraction(1, t), uz = fraction(2, t);
         const M by_z = hn::Not(hn::Or(by_x, by_y));
-        const V u = in_unit(hn::IfThenElse(by_x, uy, ux)), v = in_unit(hn::IfThenElse(by_z, uy, uz));
+        V u = hn::IfThenElse(by_x, uy, ux), v = hn::IfThenElse(by_z, uy, uz);
+        if constexpr (bounded || !uniform) {  // even cells: beyond a face by as much as places are worth
+            u = in_unit(u);
+            v = in_unit(v);
+        }
         // Pairs along x, of a face across x along y.
         const auto ix = hn::RebindMask(di_, by_x), iy = hn::RebindMask(di_, by_y), iz = hn::RebindMask(di_, by_z);
         const VI low = hn::IfThenElse(ix, turned_id_, value_id_);
@@ -345,57 +352,130 @@ HWY_INLINE int packet_width(D d) {
     return static_cast<int>(hn::Lanes(d) >= 8 ? 4 : hn::Lanes(d) >= 2 ? 2 : 1);
 }
 
+// The pixels of a tile whose rays are the lanes of a vector. Those beyond its sides are none.
+template <class D>
+class Packet {
+public:
+    HWY_INLINE Packet(D d, const Tile& tile, int x, int y) : x_(x), y_(y) {
+        const hn::RebindToSigned<D> di;
+        const auto lanes = static_cast<int>(hn::Lanes(d));
+        alignas(64) std::int32_t inside[packet_lanes];
+        for (int lane = 0; lane < lanes; ++lane) {
+            const int column = x + lane % packet_width(d), row = y + lane / packet_width(d);
+            inside[lane] = column < tile.width && row < tile.height ? 1 : 0;
+            pixel_[lane] = inside[lane] ? tile_side * row + column : 0;
+        }
+        some_ = hn::RebindMask(d, hn::Gt(hn::Load(di, inside), hn::Zero(di)));
+    }
+
+    const std::int32_t* pixel() const { return pixel_; }
+    HWY_INLINE hn::Mask<D> some() const { return some_; }
+
+    HWY_INLINE void keep(D d, const PacketLight<D>& seen, const Tile& tile) const {
+        alignas(64) float rgba[4 * packet_lanes];
+        hn::StoreInterleaved4(seen.r, seen.g, seen.b, hn::Sub(hn::Set(d, 1.0F), seen.transmitted), d, rgba);
+        for (int lane = 0; lane < static_cast<int>(hn::Lanes(d)); ++lane) {
+            const int column = x_ + lane % packet_width(d), row = y_ + lane / packet_width(d);
+            const float* light = rgba + 4 * lane;
+            if (column < tile.width && row < tile.height)
+                tile.pixels[static_cast<std::size_t>(row) * tile.stride + static_cast<std::size_t>(column)] = {light[0], light[1], light[2], light[3]};
+        }
+    }
+
+private:
+    int x_, y_;
+    alignas(64) std::int32_t pixel_[packet_lanes];
+    hn::Mask<D> some_;
+};
+
+template <class D>
+HWY_INLINE PacketLight<D> nothing_seen(D d) {
+    const auto zero = hn::Zero(d);
+    return {zero, zero, zero, hn::Set(d, 1.0F)};
+}
+
 // Calls draw(pixel, some, seen) for each packet of a tile's rays, which fills `seen`, and keeps what it has seen as pixels.
 template <class D, class Draw>
 HWY_INLINE void for_packets(D d, const Tile& tile, Draw draw) {
-    const hn::RebindToSigned<D> di;
-    const auto lanes = static_cast<int>(hn::Lanes(d));
-    const int columns = packet_width(d), rows = lanes / columns;
+    const int columns = packet_width(d), rows = static_cast<int>(hn::Lanes(d)) / columns;
     for (int y = 0; y < tile.height; y += rows)
         for (int x = 0; x < tile.width; x += columns) {
-            alignas(64) std::int32_t pixel[packet_lanes], inside[packet_lanes];
-            for (int lane = 0; lane < lanes; ++lane) {
-                const int column = x + lane % columns, row = y + lane / columns;
-                inside[lane] = column < tile.width && row < tile.height ? 1 : 0;
-                pixel[lane] = inside[lane] ? tile_side * row + column : 0;
-            }
-            const auto some = hn::RebindMask(d, hn::Gt(hn::Load(di, inside), hn::Zero(di)));
-            const auto zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-            PacketLight<D> seen{zero, zero, zero, one};
-            draw(pixel, some, seen);
-            alignas(64) float rgba[4 * packet_lanes];
-            hn::StoreInterleaved4(seen.r, seen.g, seen.b, hn::Sub(one, seen.transmitted), d, rgba);
-            for (int lane = 0; lane < lanes; ++lane)
-                if (inside[lane]) {
-                    const float* light = rgba + 4 * lane;
-                    tile.pixels[static_cast<std::size_t>(y + lane / columns) * tile.stride + static_cast<std::size_t>(x + lane % columns)] = {
-                        light[0], light[1], light[2], light[3]};
-                }
+            const Packet<D> packet(d, tile, x, y);
+            PacketLight<D> seen = nothing_seen(d);
+            draw(packet.pixel(), packet.some(), seen);
+            packet.keep(d, seen, tile);
         }
 }
+
+// Packets side by side that take turns, some steps each: the cells that one has just read are in the first-level cache for the others.
+template <bool uniform, class D>
+class PacketGroup {
+public:
+    static constexpr int side = 8;  // pixels
+
+    HWY_INLINE PacketGroup(D d, const GridCells& grid, const GridRays& rays, const Tile& tile, int x, int y) : PacketGroup(d, grid, rays, tile, x, y, Numbers()) {}
+
+    // Returns the number of segments.
+    HWY_INLINE std::size_t draw(const GridCells& grid, const Shading& shading, float bend, SegmentChunk& chunk, CrossingSegments& crossing) {
+        const auto hidden = hn::Set(d_, 1.0F - shading.opaque);
+        std::size_t segments = 0;
+        for (bool more = true; more;) {
+            more = false;
+            for (std::size_t i = 0; i < count; ++i) {
+                GridWalk<uniform, D>& walk = walks_[i];
+                if (walk.ended()) continue;
+                if (grid.empty) walk.leap();
+                chunk.count = 0;
+                while (chunk.count < steps_at_once && !walk.ended()) {
+                    segments += walk.active();
+                    walk.step(bend, chunk);
+                }
+                composite(d_, shading, grid.constant, chunk, crossing, seen_[i]);
+                walk.keep(hn::Gt(seen_[i].transmitted, hidden));
+                more = more || !walk.ended();
+            }
+        }
+        return segments;
+    }
+
+    HWY_INLINE void keep(const Tile& tile) const {
+        for (std::size_t i = 0; i < count; ++i) packets_[i].keep(d_, seen_[i], tile);
+    }
+
+private:
+    static constexpr std::size_t count = static_cast<std::size_t>(side * side) / hn::MaxLanes(D());
+    using Numbers = std::make_index_sequence<count>;
+
+    static HWY_INLINE Packet<D> packet_at(D d, const Tile& tile, int x, int y, std::size_t i) {
+        const int width = packet_width(d), columns = side / width, height = static_cast<int>(hn::Lanes(d)) / width;
+        return Packet<D>(d, tile, x + width * (static_cast<int>(i) % columns), y + height * (static_cast<int>(i) / columns));
+    }
+
+    template <std::size_t... i>
+    HWY_INLINE PacketGroup(D d, const GridCells& grid, const GridRays& rays, const Tile& tile, int x, int y, std::index_sequence<i...>)
+        : d_(d), packets_{packet_at(d, tile, x, y, i)...}, walks_{GridWalk<uniform, D>(d, grid, rays, packets_[i].pixel(), packets_[i].some())...},
+          seen_{((void)i, nothing_seen(d))...} {}
+
+    D d_;
+    Packet<D> packets_[count];
+    GridWalk<uniform, D> walks_[count];
+    PacketLight<D> seen_[count];
+};
 
 template <bool uniform>
 HWY_INLINE std::size_t draw_grid(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
     using D = hn::CappedTag<float, packet_lanes>;
+    using Group = PacketGroup<uniform, D>;
     const D d;
     SegmentChunk chunk;
     CrossingSegments crossing;
     std::size_t segments = 0;
-    for_packets(d, tile, [&](const std::int32_t* pixel, hn::Mask<D> some, PacketLight<D>& seen) HWY_ATTR {
-        GridWalk<uniform, D> walk(d, grid, rays, pixel, some);
-        const auto hidden = hn::Set(d, 1.0F - shading.opaque);
-        while (!walk.ended()) {
-            if (grid.empty) walk.leap();
-            chunk.count = 0;
-            while (chunk.count < steps_at_once && !walk.ended()) {
-                segments += walk.active();
-                walk.step(bend, chunk);
-            }
-            light_of_chunk(d, shading, grid.constant, chunk, crossing);
-            composite(d, chunk, seen);
-            walk.keep(hn::Gt(seen.transmitted, hidden));
+    for (int y = 0; y < tile.height; y += Group::side)
+        for (int x = 0; x < tile.width; x += Group::side) {
+            Group group(d, grid, rays, tile, x, y);
+            segments += group.draw(grid, shading, bend, chunk, crossing);
+            group.keep(tile);
         }
-    });
     return segments;
 }
 
