@@ -40,19 +40,19 @@ public:
     using DI = hn::RebindToSigned<D>;
     using M = hn::Mask<D>;
 
-    HWY_INLINE LanePieces(D d, const PieceArrays& table, V s) : d_(d), piece_(piece_of_lanes(d, table, s)) {
-        const PerLane<D> lanes(d, table, piece_);
-        begin_ = lanes.of(table.begin);
-        end_ = lanes.of(table.end);
-        dark_ = hn::Eq(hn::Max(lanes.of(table.extinction[0]), lanes.of(table.extinction[1])), hn::Zero(d));
-    }
+    HWY_INLINE LanePieces(D d, const PieceArrays& table, V s) : LanePieces(d, table, piece_of_lanes(d, table, s)) {}
 
-    hn::Vec<DI> number() const { return piece_; }
+    HWY_INLINE hn::Vec<DI> numbers() const { return numbers_; }
+    HWY_INLINE const PerLane<D>& entries() const { return entries_; }
     // A scalar at the end of a piece is the next one's.
     HWY_INLINE M hold(V s) const { return hn::And(hn::Ge(s, begin_), hn::Lt(s, end_)); }
     HWY_INLINE M dark() const { return dark_; }
 
 private:
+    HWY_INLINE LanePieces(D d, const PieceArrays& table, hn::Vec<DI> numbers)
+        : numbers_(numbers), entries_(d, table, numbers), begin_(entries_.of(table.begin)), end_(entries_.of(table.end)),
+          dark_(hn::Eq(hn::Max(entries_.of(table.extinction[0]), entries_.of(table.extinction[1])), hn::Zero(d))) {}
+
     // Few pieces are counted, more are looked up.
     static HWY_INLINE hn::Vec<DI> piece_of_lanes(D d, const PieceArrays& table, V s) {
         constexpr std::int32_t few = 12;
@@ -64,8 +64,8 @@ private:
         return piece;
     }
 
-    D d_;
-    hn::Vec<DI> piece_;
+    hn::Vec<DI> numbers_;
+    PerLane<D> entries_;
     V begin_, end_;
     M dark_;
 };
@@ -122,9 +122,8 @@ public:
             const M some = hn::Gt(length, hn::Zero(d_)), stays = pieces.hold(back);
             const M seen = hn::AndNot(hn::And(stays, pieces.dark()), some);
             if (hn::AllFalse(d_, seen)) continue;
-            const LanePieces<D> from = pieces;
             LightOf<V> light;
-            if (hn::AllTrue(d_, stays) && light_inside(from, front, back, length, light)) {
+            if (hn::AllTrue(d_, stays) && light_inside(pieces, front, back, length, light)) {
                 if (waiting == chunk_.count) {
                     take(i, light);
                 } else {
@@ -134,8 +133,9 @@ public:
                 continue;
             }
             waiting = HWY_MIN(waiting, i);
+            const auto piece_front = pieces.numbers();
             pieces = LanePieces<D>(d_, table_, back);
-            pack(i, seen, from.number(), pieces.number());
+            pack(i, seen, piece_front, pieces.numbers());
         }
         if (waiting == chunk_.count) return;
         light_lists();
@@ -154,9 +154,8 @@ private:
 
     // False where a segment is too deep for the closed form.
     HWY_INLINE bool light_inside(const LanePieces<D>& pieces, V front, V back, V length, LightOf<V>& light) const {
-        const PerLane<D> lanes(d_, table_, pieces.number());
         V depth;
-        light = LightInPiece<D>(d_, table_, lanes)(front, back, length, depth);
+        light = LightInPiece<D>(d_, table_, pieces.entries())(front, back, length, depth);
         return hn::AllTrue(d_, hn::Le(depth, hn::Set(d_, mean_place_depth)));
     }
 
@@ -251,7 +250,9 @@ HWY_NOINLINE void light_of_chunk(D d, const Shading& shading, bool constant, Seg
 // The light of all steps behind what the rays have seen.
 template <class D>
 HWY_NOINLINE void composite(D d, const Shading& shading, bool constant, SegmentChunk& chunk, CrossingSegments& crossing, PacketLight<D>& seen) {
-    for_lit_steps(d, shading, constant, chunk, crossing, [&](std::size_t, const LightOf<hn::Vec<D>>& light) HWY_ATTR { put_behind<D>(light, seen); });
+    PacketLight<D> now = seen;  // kept in registers
+    for_lit_steps(d, shading, constant, chunk, crossing, [&](std::size_t, const LightOf<hn::Vec<D>>& light) HWY_ATTR { put_behind<D>(light, now); });
+    seen = now;
 }
 
 }  // namespace cellproj::cpu::HWY_NAMESPACE

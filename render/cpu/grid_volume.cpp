@@ -228,6 +228,7 @@ void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int w
     const glm::dvec3 first = ray_at(0.5, 0.5), per_column = (ray_at(width + 0.5, 0.5) - first) / double(width),
                      per_row = (ray_at(0.5, height + 0.5) - first) / double(height);
     const glm::dvec3 eye = transform.ray({x + 0.5, y + 0.5}).origin;
+    const Direction parallel(forward, units_.length);
     const auto columns = static_cast<std::size_t>(transform.size().width);
     rays.cut = !window.empty();
     for (int row = 0; row < height; ++row)
@@ -239,37 +240,35 @@ void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int w
                 const DepthInterval& pixel = window[static_cast<std::size_t>(y + row) * columns + static_cast<std::size_t>(x + column)];
                 kept = {std::max(kept.near, pixel.near * units_.length), std::min(kept.far, pixel.far * units_.length)};
             }
-            find_ray(perspective ? eye : place, perspective ? place : forward, kept, static_cast<std::size_t>(tile_side * row + column), rays);
+            find_ray(perspective ? eye : place, perspective ? Direction(place, units_.length) : parallel, kept, static_cast<std::size_t>(tile_side * row + column), rays);
         }
 }
 
-// `direction` of any length.
-void GridVolume::find_ray(const glm::dvec3& origin, const glm::dvec3& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const {
+void GridVolume::find_ray(const glm::dvec3& origin, const Direction& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const {
     double enter = kept.near, leave = kept.far;
     for (int a = 0; a < 3; ++a) {
         const Axis& axis = axes_[static_cast<std::size_t>(a)];
-        const double d = direction[a], to_low = axis.low - origin[a], to_high = axis.high - origin[a];
-        if (d == 0) {
+        const double to_low = axis.low - origin[a], to_high = axis.high - origin[a];
+        if (direction.along[a] == 0) {
             if (to_low > 0 || to_high <= 0) leave = -infinity;
             continue;
         }
-        const double per_d = 1 / d;
-        enter = std::max(enter, (d > 0 ? to_low : to_high) * per_d);
-        leave = std::min(leave, (d > 0 ? to_high : to_low) * per_d);
+        const double low = to_low * direction.inverse[a], high = to_high * direction.inverse[a];
+        enter = std::max(enter, std::min(low, high));
+        leave = std::min(leave, std::max(low, high));
     }
     if (!(leave > enter)) {
         rays.length[pixel] = 0;
         return;
     }
-    const double speed = glm::length(direction) / units_.length, length = (leave - enter) * speed;
-    rays.length[pixel] = static_cast<float>(length);
+    rays.length[pixel] = static_cast<float>((leave - enter) * direction.speed);
     for (int a = 0; a < 3; ++a) {
         const auto i = static_cast<std::size_t>(a);
         const Axis& axis = axes_[i];
-        const double place = ((origin[a] - axis.low) + enter * direction[a]) * axis.per_unit;
-        const double change = direction[a] * axis.per_unit;  // per unit of `enter`
+        const double place = ((origin[a] - axis.low) + enter * direction.along[a]) * axis.per_unit;
+        const double change = direction.along[a] * axis.per_unit;  // per unit of `enter`
         rays.origin[i][pixel] = static_cast<float>(std::clamp(place, 0.0, static_cast<double>(cell_counts_[i])));
-        rays.direction[i][pixel] = std::abs(change) * (leave - enter) > no_movement ? static_cast<float>(change / speed) : 0.0F;
+        rays.direction[i][pixel] = std::abs(change) * (leave - enter) > no_movement ? static_cast<float>(change * direction.per_speed) : 0.0F;
     }
 }
 

@@ -16,10 +16,19 @@ namespace cellproj::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // After so many steps a packet looks at the light, and whether it may leap: small enough for the first-level cache.
-inline constexpr std::size_t steps_at_once = 12;
+inline constexpr std::size_t steps_at_once = 16;
 // A cell is cut into at most this many lines.
 inline constexpr float most_parts = 32;
 static_assert(SegmentChunk::most >= steps_at_once + static_cast<std::size_t>(most_parts));
+
+// Where the rays of a packet leave their cells, step by step.
+struct FaceChunk {
+    struct Face {
+        PairPlaces edge, opposite;
+        alignas(64) float along[packet_lanes], between[packet_lanes];
+    };
+    Face of_step[steps_at_once];
+};
 
 template <bool uniform, class D>
 class GridWalk {
@@ -84,7 +93,41 @@ public:
         advance(ahead);
     }
 
-    // Out of bricks that show nothing.
+    // As many steps as a chunk takes at once, one line from face to face each. Values per point, and rays that are not cut in the grid. First
+    // where the rays leave their cells, then the scalars there: neither waits for the other, and memory answers for many steps at once.
+    // Returns the number of segments.
+    HWY_INLINE std::size_t step_along_lines(FaceChunk& faces, SegmentChunk& chunk) {
+        std::size_t segments = 0;
+        GridWalk walk = *this;  // which what is stored below cannot change, as compilers know
+        while (chunk.count < steps_at_once && !walk.ended()) {
+            segments += walk.active();
+            const Ahead ahead = walk.look_ahead();
+            const FacePlace place = walk.place_on_face(ahead);
+            FaceChunk::Face& face = faces.of_step[chunk.count];
+            store_places(d_, place.edge, face.edge);
+            store_places(d_, place.opposite, face.opposite);
+            hn::Store(place.along, d_, face.along);
+            hn::Store(place.between, d_, face.between);
+            hn::Store(ahead.length, d_, chunk.steps[chunk.count++].length);
+            walk.advance(ahead);
+        }
+        take_state(walk);
+        V scalar = scalar_;
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            const FaceChunk::Face& face = faces.of_step[i];
+            const auto [c0, c1] = load_pairs(d_, grid_.values, face.edge);
+            const auto [c2, c3] = load_pairs(d_, grid_.values, face.opposite);
+            const V u = hn::Load(d_, face.along), v = hn::Load(d_, face.between);
+            hn::Store(scalar, d_, chunk.steps[i].front);
+            scalar = in_unit(between(between(c0, c1, u), between(c2, c3, u), v));
+            hn::Store(scalar, d_, chunk.steps[i].back);
+        }
+        scalar_ = scalar;
+        return segments;
+    }
+    HWY_INLINE bool along_lines(float bend) const { return !grid_.constant && !cut_ && !(bend < std::numeric_limits<float>::max()); }
+
+    // Out of bricks that show nothing, where most rays are in such.
     HWY_NOINLINE void leap() {
         const M none = hn::Lt(t_, hn::Zero(d_));
         M leapt = none, entered[3] = {none, none, none};  // and across which planes they came into their cells
@@ -94,7 +137,8 @@ public:
                 brick = hn::Add(brick, hn::Mul(hn::ShiftRight<2>(hn::ConvertTo(di_, axes_[a].cell)), hn::Set(di_, grid_.axes[a].brick_stride)));
             const VI level = hn::IfThenElseZero(hn::RebindMask(di_, active_), hn::GatherIndex(di_, grid_.empty, brick));
             const M empty = hn::RebindMask(d_, hn::Gt(level, hn::Zero(di_)));
-            if (hn::AllFalse(d_, empty)) break;
+            // A packet is done when its last ray is: few that leap gain nothing.
+            if (2 * hn::CountTrue(d_, empty) < active() + 1) break;
             leapt = hn::Or(leapt, leap_out_of(empty, hn::Add(level, level), entered));
         }
         if (hn::AllFalse(d_, leapt)) return;
@@ -158,6 +202,15 @@ protected:
         return HWY_TARGET == HWY_AVX3 ? hn::IfThenElse(where, hn::Add(a, b), a) : hn::Add(a, hn::IfThenElseZero(where, b));
     }
 
+    HWY_INLINE void take_state(const GridWalk& walk) {
+        t_ = walk.t_;
+        active_ = walk.active_;
+        value_id_ = walk.value_id_;
+        turned_id_ = walk.turned_id_;
+        cell_id_ = walk.cell_id_;
+        for (std::size_t a = 0; a < 3; ++a) axes_[a].cell = walk.axes_[a].cell;
+    }
+
     // Where the ray crosses the plane ahead, at the end of these cells.
     HWY_INLINE V plane_ahead(std::size_t a, V cell) const {
         const Axis& axis = axes_[a];
@@ -204,26 +257,34 @@ protected:
     HWY_INLINE V between(V low, V high, V share) const { return hn::MulAdd(hn::Sub(high, low), share, low); }
     HWY_INLINE V in_unit(V x) const { return hn::Min(hn::Max(x, hn::Zero(d_)), hn::Set(d_, 1.0F)); }
 
+    // Where a ray leaves through the face of a cell: the numbers of the values of two edges of the face, lower ends, and the place along and
+    // between them, 0..1 but for rounding in even cells.
+    struct FacePlace {
+        VI edge, opposite;
+        V along, between;
+    };
+    HWY_INLINE FacePlace place_on_face(const Ahead& ahead) const {
+        const M by_x = ahead.by_x, by_y = ahead.by_y, by_z = hn::Not(hn::Or(by_x, by_y));
+        const V t = hn::Min(ahead.leave, ahead.nearest);
+        const V ux = fraction(0, t), uy = fraction(1, t), uz = fraction(2, t);
+        // Edges along x, of a face across x along y.
+        const auto ix = hn::RebindMask(di_, by_x), iy = hn::RebindMask(di_, by_y), iz = hn::RebindMask(di_, by_z);
+        const VI low = hn::IfThenElse(ix, turned_id_, value_id_);
+        const VI edge = hn::Add(low, hn::IfThenElse(ix, axes_[0].to_exit, hn::IfThenElse(iy, axes_[1].to_exit, axes_[2].to_exit)));
+        const VI across = hn::IfThenElse(iz, hn::Set(di_, grid_.axes[1].value_stride), hn::Set(di_, grid_.axes[2].value_stride));
+        const V u = hn::IfThenElse(by_x, uy, ux), v = hn::IfThenElse(by_z, uy, uz);
+        if constexpr (uniform) return {edge, hn::Add(edge, across), u, v};
+        return {edge, hn::Add(edge, across), in_unit(u), in_unit(v)};
+    }
+
     // The bilinear scalar on the face where the ray leaves; where it is cut in the cell, the trilinear one there. `bounded`: never beyond those
     // of the corners of the face.
     template <bool bounded>
     HWY_INLINE V scalar_at_face(const Ahead& ahead) const {
-        const M by_x = ahead.by_x, by_y = ahead.by_y;
-        const V t = hn::Min(ahead.leave, ahead.nearest);
-        const V ux = fraction(0, t), uy = fraction(1, t), uz = fraction(2, t);
-        const M by_z = hn::Not(hn::Or(by_x, by_y));
-        V u = hn::IfThenElse(by_x, uy, ux), v = hn::IfThenElse(by_z, uy, uz);
-        if constexpr (bounded || !uniform) {  // even cells: beyond a face by as much as places are worth
-            u = in_unit(u);
-            v = in_unit(v);
-        }
-        // Pairs along x, of a face across x along y.
-        const auto ix = hn::RebindMask(di_, by_x), iy = hn::RebindMask(di_, by_y), iz = hn::RebindMask(di_, by_z);
-        const VI low = hn::IfThenElse(ix, turned_id_, value_id_);
-        const VI corner = hn::Add(low, hn::IfThenElse(ix, axes_[0].to_exit, hn::IfThenElse(iy, axes_[1].to_exit, axes_[2].to_exit)));
-        const VI across = hn::IfThenElse(iz, hn::Set(di_, grid_.axes[1].value_stride), hn::Set(di_, grid_.axes[2].value_stride));
-        const auto [c0, c1] = load_pairs(d_, grid_.values, corner);
-        const auto [c2, c3] = load_pairs(d_, grid_.values, hn::Add(corner, across));
+        const FacePlace place = place_on_face(ahead);
+        const auto [c0, c1] = load_pairs(d_, grid_.values, place.edge);
+        const auto [c2, c3] = load_pairs(d_, grid_.values, place.opposite);
+        const V u = bounded ? in_unit(place.along) : place.along, v = bounded ? in_unit(place.between) : place.between;
         V scalar = between(between(c0, c1, u), between(c2, c3, u), v);
         if constexpr (bounded) {
             const V least = hn::Min(hn::Min(c0, c1), hn::Min(c2, c3)), most = hn::Max(hn::Max(c0, c1), hn::Max(c2, c3));
@@ -243,11 +304,13 @@ protected:
     };
     HWY_INLINE Corners corners() const {
         Corners result;
-        for (std::size_t c = 0; c < 8; ++c) {
+        for (std::size_t c = 0; c < 8; c += 2) {  // pairs along x
             std::int32_t offset = 0;
-            for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t a = 1; a < 3; ++a)
                 if (c >> a & 1U) offset += grid_.axes[a].value_stride;
-            result.at[c] = hn::GatherIndex(d_, grid_.values + offset, value_id_);
+            const auto [low, high] = load_pairs(d_, grid_.values, hn::Add(value_id_, hn::Set(di_, offset)));
+            result.at[c] = low;
+            result.at[c + 1] = high;
         }
         return result;
     }
@@ -426,9 +489,13 @@ public:
                 if (walk.ended()) continue;
                 if (grid.empty) walk.leap();
                 chunk.count = 0;
-                while (chunk.count < steps_at_once && !walk.ended()) {
-                    segments += walk.active();
-                    walk.step(bend, chunk);
+                if (walk.along_lines(bend)) {
+                    segments += walk.step_along_lines(faces_, chunk);
+                } else {
+                    while (chunk.count < steps_at_once && !walk.ended()) {
+                        segments += walk.active();
+                        walk.step(bend, chunk);
+                    }
                 }
                 composite(d_, shading, grid.constant, chunk, crossing, seen_[i]);
                 walk.keep(hn::Gt(seen_[i].transmitted, hidden));
@@ -460,6 +527,7 @@ private:
     Packet<D> packets_[count];
     GridWalk<uniform, D> walks_[count];
     PacketLight<D> seen_[count];
+    FaceChunk faces_;
 };
 
 template <bool uniform>

@@ -22,17 +22,35 @@ struct LanePairs {
     hn::Vec<D> first, second;  // values[at] and values[at + 1] of each lane
 };
 
+// Where the pairs of lanes begin, each below 2³²: two lanes in 64 bits, the lower one in the lower half.
+struct PairPlaces {
+    alignas(64) std::uint64_t both[packet_lanes / 2];
+};
+
 #if HWY_TARGET == HWY_SCALAR
 
 template <class D>
-HWY_INLINE LanePairs<D> load_pairs(D d, const float* values, hn::Vec<hn::RebindToSigned<D>> at) {
-    const float* pair = values + static_cast<std::uint32_t>(hn::GetLane(at));
+HWY_INLINE void store_places(D d, hn::Vec<hn::RebindToSigned<D>> at, PairPlaces& places) {
+    (void)d;
+    places.both[0] = static_cast<std::uint32_t>(hn::GetLane(at));
+}
+
+template <class D>
+HWY_INLINE LanePairs<D> load_pairs(D d, const float* values, const PairPlaces& at) {
+    const float* pair = values + static_cast<std::uint32_t>(at.both[0]);
     return {hn::LoadU(d, pair), hn::LoadU(d, pair + 1)};
 }
 
 #else
 
-// As many pairs as D holds, one after the other. `at` tells their places, two in 64 bits: the lower lane's in the lower half.
+template <class D>
+HWY_INLINE void store_places(D d, hn::Vec<hn::RebindToSigned<D>> at, PairPlaces& places) {
+    (void)d;
+    const hn::Repartition<std::uint64_t, D> d64;
+    hn::Store(hn::BitCast(d64, at), d64, places.both);
+}
+
+// As many pairs as D holds, one after the other. `at`: as PairPlaces.
 template <class D>
 HWY_INLINE hn::Vec<D> pairs_in_a_row(D d, const float* values, const std::uint64_t* at) {
     constexpr std::size_t floats = hn::MaxLanes(D());
@@ -44,18 +62,20 @@ HWY_INLINE hn::Vec<D> pairs_in_a_row(D d, const float* values, const std::uint64
     }
 }
 
-// `at`: below 2³², as bits.
 template <class D>
-HWY_INLINE LanePairs<D> load_pairs(D d, const float* values, hn::Vec<hn::RebindToSigned<D>> at) {
-    constexpr std::size_t lanes = hn::MaxLanes(D());
-    const hn::Repartition<std::uint64_t, D> d64;
-    alignas(64) std::uint64_t places[lanes / 2];
-    hn::Store(hn::BitCast(d64, at), d64, places);
-    const auto low = pairs_in_a_row(d, values, places), high = pairs_in_a_row(d, values, places + lanes / 4);
+HWY_INLINE LanePairs<D> load_pairs(D d, const float* values, const PairPlaces& at) {
+    const auto low = pairs_in_a_row(d, values, at.both), high = pairs_in_a_row(d, values, at.both + hn::MaxLanes(D()) / 4);
     return {hn::ConcatEven(d, high, low), hn::ConcatOdd(d, high, low)};
 }
 
 #endif
+
+template <class D>
+HWY_INLINE LanePairs<D> load_pairs(D d, const float* values, hn::Vec<hn::RebindToSigned<D>> at) {
+    PairPlaces places;
+    store_places(d, at, places);
+    return load_pairs(d, values, places);
+}
 
 }  // namespace cellproj::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

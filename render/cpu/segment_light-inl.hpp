@@ -145,11 +145,15 @@ inline constexpr float mean_place_depth = 1.0F;
 //   ∫ t·e^(−D(t)) dD(t) / (1 − e^(−D))
 //     = 1/2 + r/6 + D·(r²/60 − 1/12) + D²·(r³/840 − r/360) + D³·(1/720 − r²/2520 + r⁴/15120) + D⁴·(r/15120 − r³/30240 + …)
 //       + D⁵·(−1/30240 + r²/100800 − …) + D⁶·(−r/604800 + …).
-// What is left out is less than 2e-6 up to mean_place_depth.
+// What is left out is less than 2e-6 up to mean_place_depth, and of shallow depths, which take three terms, 3e-6.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V mean_place(D d, V depth, V r) {
     const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
     const V square = hn::Mul(r, r);
+    if (hn::AllTrue(d, hn::Le(depth, set(shallow_depth)))) {
+        const V slope = hn::MulAdd(hn::Mul(r, depth), set(-1.0F / 360), hn::MulAdd(square, set(1.0F / 60), set(-1.0F / 12)));
+        return hn::MulAdd(slope, depth, hn::MulAdd(r, set(1.0F / 6), set(0.5F)));
+    }
     V mean = hn::MulAdd(square, set(1.0F / 100800), set(-1.0F / 30240));
     mean = hn::MulAdd(mean, depth, hn::Mul(r, hn::MulAdd(square, set(-1.0F / 30240), set(1.0F / 15120))));
     mean = hn::MulAdd(mean, depth, hn::MulAdd(square, hn::MulAdd(square, set(1.0F / 15120), set(-1.0F / 2520)), set(1.0F / 720)));
