@@ -150,16 +150,17 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE V mean_place(D d, V depth, V r) {
     const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
     const V square = hn::Mul(r, r);
-    if (hn::AllTrue(d, hn::Le(depth, set(shallow_depth)))) {
-        const V slope = hn::MulAdd(hn::Mul(r, depth), set(-1.0F / 360), hn::MulAdd(square, set(1.0F / 60), set(-1.0F / 12)));
-        return hn::MulAdd(slope, depth, hn::MulAdd(r, set(1.0F / 6), set(0.5F)));
-    }
+    const V slope = hn::MulAdd(hn::Mul(r, depth), set(-1.0F / 360), hn::MulAdd(square, set(1.0F / 60), set(-1.0F / 12)));
+    const V few_terms = hn::MulAdd(slope, depth, hn::MulAdd(r, set(1.0F / 6), set(0.5F)));
+    const auto shallow = hn::Le(depth, set(shallow_depth));
+    if (hn::AllTrue(d, shallow)) return few_terms;
     V mean = hn::MulAdd(square, set(1.0F / 100800), set(-1.0F / 30240));
     mean = hn::MulAdd(mean, depth, hn::Mul(r, hn::MulAdd(square, set(-1.0F / 30240), set(1.0F / 15120))));
     mean = hn::MulAdd(mean, depth, hn::MulAdd(square, hn::MulAdd(square, set(1.0F / 15120), set(-1.0F / 2520)), set(1.0F / 720)));
     mean = hn::MulAdd(mean, depth, hn::Mul(r, hn::MulAdd(square, set(1.0F / 840), set(-1.0F / 360))));
     mean = hn::MulAdd(mean, depth, hn::MulAdd(square, set(1.0F / 60), set(-1.0F / 12)));
-    return hn::MulAdd(mean, depth, hn::MulAdd(r, set(1.0F / 6), set(0.5F)));
+    mean = hn::MulAdd(mean, depth, hn::MulAdd(r, set(1.0F / 6), set(0.5F)));
+    return hn::IfThenElse(shallow, few_terms, mean);  // the same for a lane, whatever the others are
 }
 
 template <class D, class V = hn::Vec<D>>
