@@ -14,7 +14,10 @@
 
 #include "render/cpu/segment_light-inl.hpp"
 #include "render/cpu/table_light-inl.hpp"
+#include "render/cpu/pack_lanes-inl.hpp"
 #include "render/cpu/grid_segments-inl.hpp"
+#include "render/cpu/grid_light-inl.hpp"
+#include "render/cpu/lane_pairs-inl.hpp"
 #include "render/cpu/grid_walk-inl.hpp"
 #include "render/cpu/reflection-inl.hpp"
 #include "render/cpu/grid_medium_light-inl.hpp"

@@ -26,6 +26,7 @@ struct GridCells {
     struct Axis {
         std::int32_t cells = 0;
         std::int32_t value_stride = 0;        // from a cell's value to that of the next one along the axis
+        std::int32_t turned_stride = 0;       // likewise in the turned copy of the values
         std::int32_t cell_stride = 0;         // likewise of `present`
         std::int32_t brick_stride = 0;        // likewise of `empty`
         const float* planes = nullptr;        // #cells + 1, axis units; null in all axes when all are uniform
@@ -33,6 +34,7 @@ struct GridCells {
     };
     std::array<Axis, 3> axes;
     const float* values = nullptr;          // 0..1, one per point or per cell
+    std::int32_t turned = 0;                // of values per point: where in `values` they stand once more, neighbours along y side by side
     bool constant = false;                  // per cell
     const float* present = nullptr;         // per cell: 1, or 0 where it is blanked; null when none is
     // Per brick of the first level: 0, or the number of the highest level whose brick around it shows nothing at all.

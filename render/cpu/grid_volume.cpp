@@ -94,7 +94,20 @@ GridVolume::GridVolume(const Grid& grid, const GridUnits& units)
             axis.per_width.push_back(width > 0 ? 1.0F / width : 0.0F);
         }
     }
+    if (!constant_) add_turned_values(n);
     find_ranges(grid);
+}
+
+// Behind the values, slice by slice, with rows and columns exchanged: neighbours along y stand side by side as well (grid_walk-inl.hpp).
+void GridVolume::add_turned_values(const GridDimensions& n) {
+    turned_ = static_cast<std::int32_t>(values_.size());
+    values_.resize(2 * values_.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, n.nk, [&](std::size_t k) {
+        const float* from = &values_[n.ni * n.nj * k];
+        float* to = &values_[n.ni * n.nj * (n.nk + k)];
+        for (std::size_t i = 0; i < n.ni; ++i)
+            for (std::size_t j = 0; j < n.nj; ++j) *to++ = from[i + n.ni * j];
+    });
 }
 
 void GridVolume::find_ranges(const Grid& grid) {
@@ -188,12 +201,14 @@ GridCells GridVolume::cells() const {
     std::int32_t cell_stride = 1, brick_stride = 1;
     for (std::size_t a = 0; a < 3; ++a) {
         const Axis& axis = axes_[a];
-        grid.axes[a] = {cell_counts_[a], value_strides_[a], cell_stride, brick_stride,
+        const std::int32_t turned_stride = a == 0 ? cell_counts_[1] + 1 : a == 1 ? 1 : value_strides_[2];
+        grid.axes[a] = {cell_counts_[a], value_strides_[a], turned_stride, cell_stride, brick_stride,
                         axis.planes.empty() ? nullptr : axis.planes.data(), axis.per_width.empty() ? nullptr : axis.per_width.data()};
         cell_stride *= cell_counts_[a];
         brick_stride *= static_cast<std::int32_t>(levels_[0].bricks[a]);
     }
     grid.values = values_.data();
+    grid.turned = turned_;
     grid.constant = constant_;
     grid.present = present_.empty() ? nullptr : present_.data();
     grid.empty = leaps_ ? empty_.data() : nullptr;
@@ -213,6 +228,7 @@ void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int w
     const glm::dvec3 first = ray_at(0.5, 0.5), per_column = (ray_at(width + 0.5, 0.5) - first) / double(width),
                      per_row = (ray_at(0.5, height + 0.5) - first) / double(height);
     const glm::dvec3 eye = transform.ray({x + 0.5, y + 0.5}).origin;
+    const Direction parallel(forward, units_.length);
     const auto columns = static_cast<std::size_t>(transform.size().width);
     rays.cut = !window.empty();
     for (int row = 0; row < height; ++row)
@@ -224,37 +240,35 @@ void GridVolume::find_rays(const ScreenTransform& transform, int x, int y, int w
                 const DepthInterval& pixel = window[static_cast<std::size_t>(y + row) * columns + static_cast<std::size_t>(x + column)];
                 kept = {std::max(kept.near, pixel.near * units_.length), std::min(kept.far, pixel.far * units_.length)};
             }
-            find_ray(perspective ? eye : place, perspective ? place : forward, kept, static_cast<std::size_t>(tile_side * row + column), rays);
+            find_ray(perspective ? eye : place, perspective ? Direction(place, units_.length) : parallel, kept, static_cast<std::size_t>(tile_side * row + column), rays);
         }
 }
 
-// `direction` of any length.
-void GridVolume::find_ray(const glm::dvec3& origin, const glm::dvec3& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const {
+void GridVolume::find_ray(const glm::dvec3& origin, const Direction& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const {
     double enter = kept.near, leave = kept.far;
     for (int a = 0; a < 3; ++a) {
         const Axis& axis = axes_[static_cast<std::size_t>(a)];
-        const double d = direction[a], to_low = axis.low - origin[a], to_high = axis.high - origin[a];
-        if (d == 0) {
+        const double to_low = axis.low - origin[a], to_high = axis.high - origin[a];
+        if (direction.along[a] == 0) {
             if (to_low > 0 || to_high <= 0) leave = -infinity;
             continue;
         }
-        const double per_d = 1 / d;
-        enter = std::max(enter, (d > 0 ? to_low : to_high) * per_d);
-        leave = std::min(leave, (d > 0 ? to_high : to_low) * per_d);
+        const double low = to_low * direction.inverse[a], high = to_high * direction.inverse[a];
+        enter = std::max(enter, std::min(low, high));
+        leave = std::min(leave, std::max(low, high));
     }
     if (!(leave > enter)) {
         rays.length[pixel] = 0;
         return;
     }
-    const double speed = glm::length(direction) / units_.length, length = (leave - enter) * speed;
-    rays.length[pixel] = static_cast<float>(length);
+    rays.length[pixel] = static_cast<float>((leave - enter) * direction.speed);
     for (int a = 0; a < 3; ++a) {
         const auto i = static_cast<std::size_t>(a);
         const Axis& axis = axes_[i];
-        const double place = ((origin[a] - axis.low) + enter * direction[a]) * axis.per_unit;
-        const double change = direction[a] * axis.per_unit;  // per unit of `enter`
+        const double place = ((origin[a] - axis.low) + enter * direction.along[a]) * axis.per_unit;
+        const double change = direction.along[a] * axis.per_unit;  // per unit of `enter`
         rays.origin[i][pixel] = static_cast<float>(std::clamp(place, 0.0, static_cast<double>(cell_counts_[i])));
-        rays.direction[i][pixel] = std::abs(change) * (leave - enter) > no_movement ? static_cast<float>(change / speed) : 0.0F;
+        rays.direction[i][pixel] = std::abs(change) * (leave - enter) > no_movement ? static_cast<float>(change * direction.per_speed) : 0.0F;
     }
 }
 

@@ -9,6 +9,9 @@
 #include <span>
 #include <vector>
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
 #include "classify/transfer_function.hpp"
 #include "project/camera.hpp"
 #include "render/cpu/grid_kernels.hpp"
@@ -47,13 +50,21 @@ private:
         std::array<std::size_t, 3> bricks;
         std::vector<Range> ranges;
     };
+    // Of a ray, of any length.
+    struct Direction {
+        Direction(const glm::dvec3& d, double unit) : along(d), inverse(1.0 / d), speed(glm::length(d) / unit), per_speed(1.0 / speed) {}
+
+        glm::dvec3 along, inverse;
+        double speed, per_speed;  // lengths [GridUnits] per length of it
+    };
     struct Axis {
         double low, high, per_unit;  // ends [mesh units]; axis units per mesh unit
         std::vector<float> planes, per_width;  // none when all axes are uniform
     };
 
+    void add_turned_values(const GridDimensions& n);
     void find_ranges(const Grid& grid);
-    void find_ray(const glm::dvec3& origin, const glm::dvec3& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const;
+    void find_ray(const glm::dvec3& origin, const Direction& direction, const DepthInterval& kept, std::size_t pixel, GridRays& rays) const;
 
     GridUnits units_;
     double mean_chord_;
@@ -61,6 +72,7 @@ private:
     std::array<Axis, 3> axes_;
     std::array<std::int32_t, 3> cell_counts_, value_strides_;
     std::vector<float> values_, present_;
+    std::int32_t turned_ = 0;  // where in values_ they stand once more, turned; 0 for values of cells
     std::array<Level, brick_levels> levels_;
     std::vector<float> isovalues_;
     std::vector<std::int32_t> empty_, crossed_;  // per brick of the first level

@@ -16,10 +16,19 @@ namespace cellproj::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // After so many steps a packet looks at the light, and whether it may leap: small enough for the first-level cache.
-inline constexpr std::size_t steps_at_once = 12;
+inline constexpr std::size_t steps_at_once = 16;
 // A cell is cut into at most this many lines.
 inline constexpr float most_parts = 32;
 static_assert(SegmentChunk::most >= steps_at_once + static_cast<std::size_t>(most_parts));
+
+// Where the rays of a packet leave their cells, step by step.
+struct FaceChunk {
+    struct Face {
+        PairPlaces edge, opposite;
+        alignas(64) float along[packet_lanes], between[packet_lanes];
+    };
+    Face of_step[steps_at_once];
+};
 
 template <bool uniform, class D>
 class GridWalk {
@@ -48,7 +57,9 @@ public:
             const auto upwards = hn::RebindMask(di_, up);
             const auto stride = [&](std::int32_t n) HWY_ATTR { return hn::IfThenElse(upwards, hn::Set(di_, n), hn::Set(di_, -n)); };
             axis.next_value = stride(grid.axes[a].value_stride);
+            axis.next_turned = stride(grid.axes[a].turned_stride);
             axis.next_cell = stride(grid.axes[a].cell_stride);
+            axis.to_exit = hn::IfThenElseZero(upwards, hn::Set(di_, a == 0 ? grid.axes[a].turned_stride : grid.axes[a].value_stride));
             axis.first = hn::IfThenElse(moves, uniform ? hn::Mul(hn::Sub(axis.up, axis.origin), axis.inverse) : hn::Zero(d), hn::Set(d, never));
             const V last = hn::Set(d, static_cast<float>(grid.axes[a].cells - 1));
             axis.cell = cell_at(a, axis.origin, hn::Zero(d), last);
@@ -82,7 +93,41 @@ public:
         advance(ahead);
     }
 
-    // Out of bricks that show nothing.
+    // As many steps as a chunk takes at once, one line from face to face each. Values per point, and rays that are not cut in the grid. First
+    // where the rays leave their cells, then the scalars there: neither waits for the other, and memory answers for many steps at once.
+    // Returns the number of segments.
+    HWY_INLINE std::size_t step_along_lines(FaceChunk& faces, SegmentChunk& chunk) {
+        std::size_t segments = 0;
+        GridWalk walk = *this;  // which what is stored below cannot change, as compilers know
+        while (chunk.count < steps_at_once && !walk.ended()) {
+            segments += walk.active();
+            const Ahead ahead = walk.look_ahead();
+            const FacePlace place = walk.place_on_face(ahead);
+            FaceChunk::Face& face = faces.of_step[chunk.count];
+            store_places(d_, place.edge, face.edge);
+            store_places(d_, place.opposite, face.opposite);
+            hn::Store(place.along, d_, face.along);
+            hn::Store(place.between, d_, face.between);
+            hn::Store(ahead.length, d_, chunk.steps[chunk.count++].length);
+            walk.advance(ahead);
+        }
+        take_state(walk);
+        V scalar = scalar_;
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            const FaceChunk::Face& face = faces.of_step[i];
+            const auto [c0, c1] = load_pairs(d_, grid_.values, face.edge);
+            const auto [c2, c3] = load_pairs(d_, grid_.values, face.opposite);
+            const V u = hn::Load(d_, face.along), v = hn::Load(d_, face.between);
+            hn::Store(scalar, d_, chunk.steps[i].front);
+            scalar = in_unit(between(between(c0, c1, u), between(c2, c3, u), v));
+            hn::Store(scalar, d_, chunk.steps[i].back);
+        }
+        scalar_ = scalar;
+        return segments;
+    }
+    HWY_INLINE bool along_lines(float bend) const { return !grid_.constant && !cut_ && !(bend < std::numeric_limits<float>::max()); }
+
+    // Out of bricks that show nothing, where most rays are in such.
     HWY_NOINLINE void leap() {
         const M none = hn::Lt(t_, hn::Zero(d_));
         M leapt = none, entered[3] = {none, none, none};  // and across which planes they came into their cells
@@ -92,7 +137,8 @@ public:
                 brick = hn::Add(brick, hn::Mul(hn::ShiftRight<2>(hn::ConvertTo(di_, axes_[a].cell)), hn::Set(di_, grid_.axes[a].brick_stride)));
             const VI level = hn::IfThenElseZero(hn::RebindMask(di_, active_), hn::GatherIndex(di_, grid_.empty, brick));
             const M empty = hn::RebindMask(d_, hn::Gt(level, hn::Zero(di_)));
-            if (hn::AllFalse(d_, empty)) break;
+            // A packet is done when its last ray is: few that leap gain nothing.
+            if (2 * hn::CountTrue(d_, empty) < active() + 1) break;
             leapt = hn::Or(leapt, leap_out_of(empty, hn::Add(level, level), entered));
         }
         if (hn::AllFalse(d_, leapt)) return;
@@ -113,7 +159,8 @@ protected:
         V first;                       // uniform: where plane `up` is crossed; otherwise 0; `never` without direction
         V up, step;                    // 1 and 1 towards higher cells, 0 and −1 towards lower ones
         V cell;                        // a whole number
-        VI next_value, next_cell;      // from a cell's ids to those of the next one
+        VI to_exit;                    // from a cell's value to the lowest of the face where the ray leaves; along x of the turned ones
+        VI next_value, next_turned, next_cell;  // from a cell's ids to those of the next one
     };
 
     // The way out of a cell.
@@ -137,17 +184,31 @@ protected:
     HWY_INLINE void advance(const Ahead& ahead) {
         t_ = ahead.leave;
         active_ = hn::AndNot(ahead.last, active_);
-        VI next_value = hn::Zero(di_), next_cell = hn::Zero(di_);
-        const M crossed[3]{ahead.by_x, ahead.by_y, hn::Not(hn::Or(ahead.by_x, ahead.by_y))};
+        const M by_x = hn::And(ahead.by_x, active_), by_y = hn::And(ahead.by_y, active_), crossed[3]{by_x, by_y, hn::AndNot(hn::Or(by_x, by_y), active_)};
         for (std::size_t a = 0; a < 3; ++a) {
             Axis& axis = axes_[a];
-            const M moves = hn::And(crossed[a], active_);
-            axis.cell = hn::Add(axis.cell, hn::IfThenElseZero(moves, axis.step));
-            next_value = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_value, next_value);
-            if (grid_.present) next_cell = hn::IfThenElse(hn::RebindMask(di_, moves), axis.next_cell, next_cell);
+            const auto moves = hn::RebindMask(di_, crossed[a]);
+            axis.cell = add_where(d_, crossed[a], axis.cell, axis.step);
+            value_id_ = add_where(di_, moves, value_id_, axis.next_value);
+            turned_id_ = add_where(di_, moves, turned_id_, axis.next_turned);
+            if (grid_.present) cell_id_ = add_where(di_, moves, cell_id_, axis.next_cell);
         }
-        value_id_ = hn::Add(value_id_, next_value);
-        if (grid_.present) cell_id_ = hn::Add(cell_id_, next_cell);
+    }
+
+    // Sets of instructions with masks add where one is set, others add 0.
+    template <class DT>
+    static HWY_INLINE hn::Vec<DT> add_where(DT dt, hn::Mask<DT> where, hn::Vec<DT> a, hn::Vec<DT> b) {
+        (void)dt;
+        return HWY_TARGET == HWY_AVX3 ? hn::IfThenElse(where, hn::Add(a, b), a) : hn::Add(a, hn::IfThenElseZero(where, b));
+    }
+
+    HWY_INLINE void take_state(const GridWalk& walk) {
+        t_ = walk.t_;
+        active_ = walk.active_;
+        value_id_ = walk.value_id_;
+        turned_id_ = walk.turned_id_;
+        cell_id_ = walk.cell_id_;
+        for (std::size_t a = 0; a < 3; ++a) axes_[a].cell = walk.axes_[a].cell;
     }
 
     // Where the ray crosses the plane ahead, at the end of these cells.
@@ -183,10 +244,12 @@ protected:
 
     HWY_INLINE void find_ids() {
         value_id_ = hn::Zero(di_);
+        turned_id_ = hn::Set(di_, grid_.turned);
         cell_id_ = hn::Zero(di_);
         for (std::size_t a = 0; a < 3; ++a) {
             const VI cell = hn::ConvertTo(di_, axes_[a].cell);
             value_id_ = hn::Add(value_id_, hn::Mul(cell, hn::Set(di_, grid_.axes[a].value_stride)));
+            turned_id_ = hn::Add(turned_id_, hn::Mul(cell, hn::Set(di_, grid_.axes[a].turned_stride)));
             if (grid_.present) cell_id_ = hn::Add(cell_id_, hn::Mul(cell, hn::Set(di_, grid_.axes[a].cell_stride)));
         }
     }
@@ -194,24 +257,34 @@ protected:
     HWY_INLINE V between(V low, V high, V share) const { return hn::MulAdd(hn::Sub(high, low), share, low); }
     HWY_INLINE V in_unit(V x) const { return hn::Min(hn::Max(x, hn::Zero(d_)), hn::Set(d_, 1.0F)); }
 
+    // Where a ray leaves through the face of a cell: the numbers of the values of two edges of the face, lower ends, and the place along and
+    // between them, 0..1 but for rounding in even cells.
+    struct FacePlace {
+        VI edge, opposite;
+        V along, between;
+    };
+    HWY_INLINE FacePlace place_on_face(const Ahead& ahead) const {
+        const M by_x = ahead.by_x, by_y = ahead.by_y, by_z = hn::Not(hn::Or(by_x, by_y));
+        const V t = hn::Min(ahead.leave, ahead.nearest);
+        const V ux = fraction(0, t), uy = fraction(1, t), uz = fraction(2, t);
+        // Edges along x, of a face across x along y.
+        const auto ix = hn::RebindMask(di_, by_x), iy = hn::RebindMask(di_, by_y), iz = hn::RebindMask(di_, by_z);
+        const VI low = hn::IfThenElse(ix, turned_id_, value_id_);
+        const VI edge = hn::Add(low, hn::IfThenElse(ix, axes_[0].to_exit, hn::IfThenElse(iy, axes_[1].to_exit, axes_[2].to_exit)));
+        const VI across = hn::IfThenElse(iz, hn::Set(di_, grid_.axes[1].value_stride), hn::Set(di_, grid_.axes[2].value_stride));
+        const V u = hn::IfThenElse(by_x, uy, ux), v = hn::IfThenElse(by_z, uy, uz);
+        if constexpr (uniform) return {edge, hn::Add(edge, across), u, v};
+        return {edge, hn::Add(edge, across), in_unit(u), in_unit(v)};
+    }
+
     // The bilinear scalar on the face where the ray leaves; where it is cut in the cell, the trilinear one there. `bounded`: never beyond those
     // of the corners of the face.
     template <bool bounded>
     HWY_INLINE V scalar_at_face(const Ahead& ahead) const {
-        const M by_x = ahead.by_x, by_y = ahead.by_y;
-        const V t = hn::Min(ahead.leave, ahead.nearest);
-        const V ux = fraction(0, t), uy = fraction(1, t), uz = fraction(2, t);
-        const auto stride = [&](std::size_t a) HWY_ATTR { return hn::Set(di_, grid_.axes[a].value_stride); };
-        const auto ix = hn::RebindMask(di_, by_x), iy = hn::RebindMask(di_, by_y);
-        const M by_z = hn::Not(hn::Or(by_x, by_y));
-        const auto iz = hn::RebindMask(di_, by_z);
-        const V up = hn::IfThenElse(by_x, axes_[0].up, hn::IfThenElse(by_y, axes_[1].up, axes_[2].up));
-        const VI across = hn::IfThenElse(ix, stride(0), hn::IfThenElse(iy, stride(1), stride(2)));
-        const VI first = hn::IfThenElse(ix, stride(1), stride(0)), second = hn::IfThenElse(iz, stride(1), stride(2));
-        const V u = in_unit(hn::IfThenElse(by_x, uy, ux)), v = in_unit(hn::IfThenElse(by_z, uy, uz));
-        const VI corner = hn::Add(value_id_, hn::IfThenElseZero(hn::RebindMask(di_, hn::Gt(up, hn::Zero(d_))), across));
-        const VI opposite = hn::Add(corner, second);
-        const V c0 = value(corner), c1 = value(hn::Add(corner, first)), c2 = value(opposite), c3 = value(hn::Add(opposite, first));
+        const FacePlace place = place_on_face(ahead);
+        const auto [c0, c1] = load_pairs(d_, grid_.values, place.edge);
+        const auto [c2, c3] = load_pairs(d_, grid_.values, place.opposite);
+        const V u = bounded ? in_unit(place.along) : place.along, v = bounded ? in_unit(place.between) : place.between;
         V scalar = between(between(c0, c1, u), between(c2, c3, u), v);
         if constexpr (bounded) {
             const V least = hn::Min(hn::Min(c0, c1), hn::Min(c2, c3)), most = hn::Max(hn::Max(c0, c1), hn::Max(c2, c3));
@@ -231,11 +304,13 @@ protected:
     };
     HWY_INLINE Corners corners() const {
         Corners result;
-        for (std::size_t c = 0; c < 8; ++c) {
+        for (std::size_t c = 0; c < 8; c += 2) {  // pairs along x
             std::int32_t offset = 0;
-            for (std::size_t a = 0; a < 3; ++a)
+            for (std::size_t a = 1; a < 3; ++a)
                 if (c >> a & 1U) offset += grid_.axes[a].value_stride;
-            result.at[c] = hn::GatherIndex(d_, grid_.values + offset, value_id_);
+            const auto [low, high] = load_pairs(d_, grid_.values, hn::Add(value_id_, hn::Set(di_, offset)));
+            result.at[c] = low;
+            result.at[c + 1] = high;
         }
         return result;
     }
@@ -330,7 +405,7 @@ protected:
     Axis axes_[3];
     V t_, t_end_, length_, scalar_;
     bool cut_;
-    VI value_id_, cell_id_;
+    VI value_id_, turned_id_, cell_id_;
     M active_;
 };
 
@@ -340,57 +415,135 @@ HWY_INLINE int packet_width(D d) {
     return static_cast<int>(hn::Lanes(d) >= 8 ? 4 : hn::Lanes(d) >= 2 ? 2 : 1);
 }
 
+// The pixels of a tile whose rays are the lanes of a vector. Those beyond its sides are none.
+template <class D>
+class Packet {
+public:
+    HWY_INLINE Packet(D d, const Tile& tile, int x, int y) : x_(x), y_(y) {
+        const hn::RebindToSigned<D> di;
+        const auto lanes = static_cast<int>(hn::Lanes(d));
+        alignas(64) std::int32_t inside[packet_lanes];
+        for (int lane = 0; lane < lanes; ++lane) {
+            const int column = x + lane % packet_width(d), row = y + lane / packet_width(d);
+            inside[lane] = column < tile.width && row < tile.height ? 1 : 0;
+            pixel_[lane] = inside[lane] ? tile_side * row + column : 0;
+        }
+        some_ = hn::RebindMask(d, hn::Gt(hn::Load(di, inside), hn::Zero(di)));
+    }
+
+    const std::int32_t* pixel() const { return pixel_; }
+    HWY_INLINE hn::Mask<D> some() const { return some_; }
+
+    HWY_INLINE void keep(D d, const PacketLight<D>& seen, const Tile& tile) const {
+        alignas(64) float rgba[4 * packet_lanes];
+        hn::StoreInterleaved4(seen.r, seen.g, seen.b, hn::Sub(hn::Set(d, 1.0F), seen.transmitted), d, rgba);
+        for (int lane = 0; lane < static_cast<int>(hn::Lanes(d)); ++lane) {
+            const int column = x_ + lane % packet_width(d), row = y_ + lane / packet_width(d);
+            const float* light = rgba + 4 * lane;
+            if (column < tile.width && row < tile.height)
+                tile.pixels[static_cast<std::size_t>(row) * tile.stride + static_cast<std::size_t>(column)] = {light[0], light[1], light[2], light[3]};
+        }
+    }
+
+private:
+    int x_, y_;
+    alignas(64) std::int32_t pixel_[packet_lanes];
+    hn::Mask<D> some_;
+};
+
+template <class D>
+HWY_INLINE PacketLight<D> nothing_seen(D d) {
+    const auto zero = hn::Zero(d);
+    return {zero, zero, zero, hn::Set(d, 1.0F)};
+}
+
 // Calls draw(pixel, some, seen) for each packet of a tile's rays, which fills `seen`, and keeps what it has seen as pixels.
 template <class D, class Draw>
 HWY_INLINE void for_packets(D d, const Tile& tile, Draw draw) {
-    const hn::RebindToSigned<D> di;
-    const auto lanes = static_cast<int>(hn::Lanes(d));
-    const int columns = packet_width(d), rows = lanes / columns;
+    const int columns = packet_width(d), rows = static_cast<int>(hn::Lanes(d)) / columns;
     for (int y = 0; y < tile.height; y += rows)
         for (int x = 0; x < tile.width; x += columns) {
-            alignas(64) std::int32_t pixel[packet_lanes], inside[packet_lanes];
-            for (int lane = 0; lane < lanes; ++lane) {
-                const int column = x + lane % columns, row = y + lane / columns;
-                inside[lane] = column < tile.width && row < tile.height ? 1 : 0;
-                pixel[lane] = inside[lane] ? tile_side * row + column : 0;
-            }
-            const auto some = hn::RebindMask(d, hn::Gt(hn::Load(di, inside), hn::Zero(di)));
-            const auto zero = hn::Zero(d), one = hn::Set(d, 1.0F);
-            PacketLight<D> seen{zero, zero, zero, one};
-            draw(pixel, some, seen);
-            alignas(64) float rgba[4 * packet_lanes];
-            hn::StoreInterleaved4(seen.r, seen.g, seen.b, hn::Sub(one, seen.transmitted), d, rgba);
-            for (int lane = 0; lane < lanes; ++lane)
-                if (inside[lane]) {
-                    const float* light = rgba + 4 * lane;
-                    tile.pixels[static_cast<std::size_t>(y + lane / columns) * tile.stride + static_cast<std::size_t>(x + lane % columns)] = {
-                        light[0], light[1], light[2], light[3]};
-                }
+            const Packet<D> packet(d, tile, x, y);
+            PacketLight<D> seen = nothing_seen(d);
+            draw(packet.pixel(), packet.some(), seen);
+            packet.keep(d, seen, tile);
         }
 }
+
+// Packets side by side that take turns, some steps each: the cells that one has just read are in the first-level cache for the others.
+template <bool uniform, class D>
+class PacketGroup {
+public:
+    static constexpr int side = 8;  // pixels
+
+    HWY_INLINE PacketGroup(D d, const GridCells& grid, const GridRays& rays, const Tile& tile, int x, int y) : PacketGroup(d, grid, rays, tile, x, y, Numbers()) {}
+
+    // Returns the number of segments.
+    HWY_INLINE std::size_t draw(const GridCells& grid, const Shading& shading, float bend, SegmentChunk& chunk, CrossingSegments& crossing) {
+        const auto hidden = hn::Set(d_, 1.0F - shading.opaque);
+        std::size_t segments = 0;
+        for (bool more = true; more;) {
+            more = false;
+            for (std::size_t i = 0; i < count; ++i) {
+                GridWalk<uniform, D>& walk = walks_[i];
+                if (walk.ended()) continue;
+                if (grid.empty) walk.leap();
+                chunk.count = 0;
+                if (walk.along_lines(bend)) {
+                    segments += walk.step_along_lines(faces_, chunk);
+                } else {
+                    while (chunk.count < steps_at_once && !walk.ended()) {
+                        segments += walk.active();
+                        walk.step(bend, chunk);
+                    }
+                }
+                composite(d_, shading, grid.constant, chunk, crossing, seen_[i]);
+                walk.keep(hn::Gt(seen_[i].transmitted, hidden));
+                more = more || !walk.ended();
+            }
+        }
+        return segments;
+    }
+
+    HWY_INLINE void keep(const Tile& tile) const {
+        for (std::size_t i = 0; i < count; ++i) packets_[i].keep(d_, seen_[i], tile);
+    }
+
+private:
+    static constexpr std::size_t count = static_cast<std::size_t>(side * side) / hn::MaxLanes(D());
+    using Numbers = std::make_index_sequence<count>;
+
+    static HWY_INLINE Packet<D> packet_at(D d, const Tile& tile, int x, int y, std::size_t i) {
+        const int width = packet_width(d), columns = side / width, height = static_cast<int>(hn::Lanes(d)) / width;
+        return Packet<D>(d, tile, x + width * (static_cast<int>(i) % columns), y + height * (static_cast<int>(i) / columns));
+    }
+
+    template <std::size_t... i>
+    HWY_INLINE PacketGroup(D d, const GridCells& grid, const GridRays& rays, const Tile& tile, int x, int y, std::index_sequence<i...>)
+        : d_(d), packets_{packet_at(d, tile, x, y, i)...}, walks_{GridWalk<uniform, D>(d, grid, rays, packets_[i].pixel(), packets_[i].some())...},
+          seen_{((void)i, nothing_seen(d))...} {}
+
+    D d_;
+    Packet<D> packets_[count];
+    GridWalk<uniform, D> walks_[count];
+    PacketLight<D> seen_[count];
+    FaceChunk faces_;
+};
 
 template <bool uniform>
 HWY_INLINE std::size_t draw_grid(const GridCells& grid, const GridRays& rays, const Shading& shading, float bend, const Tile& tile) {
     using D = hn::CappedTag<float, packet_lanes>;
+    using Group = PacketGroup<uniform, D>;
     const D d;
     SegmentChunk chunk;
     CrossingSegments crossing;
     std::size_t segments = 0;
-    for_packets(d, tile, [&](const std::int32_t* pixel, hn::Mask<D> some, PacketLight<D>& seen) HWY_ATTR {
-        GridWalk<uniform, D> walk(d, grid, rays, pixel, some);
-        const auto hidden = hn::Set(d, 1.0F - shading.opaque);
-        while (!walk.ended()) {
-            if (grid.empty) walk.leap();
-            chunk.count = 0;
-            while (chunk.count < steps_at_once && !walk.ended()) {
-                segments += walk.active();
-                walk.step(bend, chunk);
-            }
-            light_of_chunk(d, shading, grid.constant, chunk, crossing);
-            composite(d, chunk, seen);
-            walk.keep(hn::Gt(seen.transmitted, hidden));
+    for (int y = 0; y < tile.height; y += Group::side)
+        for (int x = 0; x < tile.width; x += Group::side) {
+            Group group(d, grid, rays, tile, x, y);
+            segments += group.draw(grid, shading, bend, chunk, crossing);
+            group.keep(tile);
         }
-    });
     return segments;
 }
 

@@ -22,7 +22,8 @@ PieceArrays::PieceArrays(const Method& method, const PieceTable& table, const Wa
     }
     constexpr std::size_t longest_vector = 16;
     const std::size_t whole_vectors = (table.piece_count() + longest_vector - 1) / longest_vector * longest_vector;
-    for (auto* list : {&begin, &end, &inverse_width, &extinction[0], &extinction[1]}) list->resize(whole_vectors);
+    begin.resize(whole_vectors, 1e30F);  // behind all scalars, for who searches it by halving
+    for (auto* list : {&end, &inverse_width, &extinction[0], &extinction[1]}) list->resize(whole_vectors);
     for (auto& of_side : color)
         for (auto& list : of_side) list.resize(whole_vectors);
     for (std::size_t channel = 0; channel < 4; ++channel) {

@@ -20,7 +20,7 @@ struct PieceArrays {
     bool mean_place;          // shallow parts may take the colour at their mean place (segment_light-inl.hpp)
     float bin_count;
     // Of each piece (classify/piece_table.hpp): scalar at its begin and its end, 1/width, τ and colour at both. These lists and those below
-    // are filled up with 0 to whole vectors.
+    // are filled up to whole vectors: `begin` with 1e30, others with 0.
     std::vector<float> begin, end, inverse_width;
     std::vector<float> extinction[2], color[2][3];
     // ∫ q ds and ∫ τ ds up to its begin: rounded, and what rounding lost.

@@ -84,13 +84,22 @@ public:
     HWY_INLINE hn::Vec<D> of(const std::vector<float>& list) const {
         if (same_) return hn::Set(d_, list[static_cast<std::size_t>(first_)]);
         if (tables_ > 2) return hn::GatherIndex(d_, list.data(), index_);
+        return permuted(list);
+    }
+    // The same for tables that fit into two vectors, however the lanes differ.
+    HWY_INLINE hn::Vec<D> permuted(const std::vector<float>& list) const {
         const DI di;
         const auto lanes = static_cast<std::int32_t>(hn::Lanes(d_));
+        const auto first = hn::LoadU(d_, list.data());
         const auto place = hn::IndicesFromVec(d_, hn::And(index_, hn::Set(di, lanes - 1)));
-        const auto low = hn::TableLookupLanes(hn::LoadU(d_, list.data()), place);
-        if (tables_ == 1) return low;
-        const auto high = hn::TableLookupLanes(hn::LoadU(d_, list.data() + lanes), place);
+        if (tables_ == 1) return hn::TableLookupLanes(first, place);
+        const auto second = hn::LoadU(d_, list.data() + lanes);
+#if HWY_TARGET == HWY_AVX3
+        return hn::Vec<D>{_mm512_permutex2var_ps(first.raw, index_.raw, second.raw)};  // Highway 1.0 has no name for it
+#else
+        const auto low = hn::TableLookupLanes(first, place), high = hn::TableLookupLanes(second, place);
         return hn::IfThenElse(hn::RebindMask(d_, hn::Lt(index_, hn::Set(di, lanes))), low, high);
+#endif
     }
 
 private:
@@ -106,6 +115,17 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> pieces_of(D d, const PieceArrays& table, V s) {
     const hn::RebindToSigned<D> di;
     using VI = hn::Vec<decltype(di)>;
+    // Of tables that are permuted, by halving.
+    constexpr auto longest = static_cast<std::int32_t>(2 * hn::MaxLanes(D()));
+    if (longest >= 32 && table.count <= longest) {
+        VI piece = hn::Zero(di);
+        for (std::int32_t step = table.count > longest / 2 ? longest / 2 : longest / 4; step > 0; step /= 2) {
+            const VI tried = hn::Add(piece, hn::Set(di, step));
+            const auto reached = hn::RebindMask(di, hn::Ge(s, PerLane<D>(d, table, tried).permuted(table.begin)));
+            piece = hn::IfThenElse(reached, tried, piece);
+        }
+        return piece;
+    }
     const VI bin = hn::ConvertTo(di, hn::Mul(s, hn::Set(d, table.bin_count)));
     VI first = hn::GatherIndex(di, table.first.data(), bin), last = hn::GatherIndex(di, table.last.data(), bin);
     while (!hn::AllTrue(di, hn::Eq(first, last))) {
@@ -125,17 +145,22 @@ inline constexpr float mean_place_depth = 1.0F;
 //   ∫ t·e^(−D(t)) dD(t) / (1 − e^(−D))
 //     = 1/2 + r/6 + D·(r²/60 − 1/12) + D²·(r³/840 − r/360) + D³·(1/720 − r²/2520 + r⁴/15120) + D⁴·(r/15120 − r³/30240 + …)
 //       + D⁵·(−1/30240 + r²/100800 − …) + D⁶·(−r/604800 + …).
-// What is left out is less than 2e-6 up to mean_place_depth.
+// What is left out is less than 2e-6 up to mean_place_depth, and of shallow depths, which take three terms, 3e-6.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V mean_place(D d, V depth, V r) {
     const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
     const V square = hn::Mul(r, r);
+    const V slope = hn::MulAdd(hn::Mul(r, depth), set(-1.0F / 360), hn::MulAdd(square, set(1.0F / 60), set(-1.0F / 12)));
+    const V few_terms = hn::MulAdd(slope, depth, hn::MulAdd(r, set(1.0F / 6), set(0.5F)));
+    const auto shallow = hn::Le(depth, set(shallow_depth));
+    if (hn::AllTrue(d, shallow)) return few_terms;
     V mean = hn::MulAdd(square, set(1.0F / 100800), set(-1.0F / 30240));
     mean = hn::MulAdd(mean, depth, hn::Mul(r, hn::MulAdd(square, set(-1.0F / 30240), set(1.0F / 15120))));
     mean = hn::MulAdd(mean, depth, hn::MulAdd(square, hn::MulAdd(square, set(1.0F / 15120), set(-1.0F / 2520)), set(1.0F / 720)));
     mean = hn::MulAdd(mean, depth, hn::Mul(r, hn::MulAdd(square, set(1.0F / 840), set(-1.0F / 360))));
     mean = hn::MulAdd(mean, depth, hn::MulAdd(square, set(1.0F / 60), set(-1.0F / 12)));
-    return hn::MulAdd(mean, depth, hn::MulAdd(r, set(1.0F / 6), set(0.5F)));
+    mean = hn::MulAdd(mean, depth, hn::MulAdd(r, set(1.0F / 6), set(0.5F)));
+    return hn::IfThenElse(shallow, few_terms, mean);  // the same for a lane, whatever the others are
 }
 
 template <class D, class V = hn::Vec<D>>
