@@ -113,7 +113,8 @@ TEST_F(GridCommand, ItsVolumeIsLit) {
     EXPECT_EQ(run_program(folder_, std::string("render --size 36x30 -o p.png --stats s.json --shade-volume --max-error 0.01 ") + voxels).code, 0);
     EXPECT_LE(nlohmann::json::parse(content("s.json")).at("pictures").at(0).at("error"), 0.01);
     EXPECT_EQ(run_program(folder_, std::string("trade --shade-volume --size 30x30 --rounds 1 --json t.json --backend cpu --method integral ") + voxels).code, 0);
-    for (const auto& row : nlohmann::json::parse(content("t.json")).at("methods"))  // as it is, and as tetrahedra: the field is linear
+    const auto ways = nlohmann::json::parse(content("t.json"));  // named: a loop does not keep what .at() refers into
+    for (const auto& row : ways.at("methods"))  // as it is, and as tetrahedra: the field is linear
         EXPECT_LT(row.at("error").at("color").at("maximum"), 0.01) << row;
     for (const char* option : {"--backend gl", "--sampling object:8 --iso 20:red:0.5", "--sampling view:9:post:x2 --shading flat"})
         EXPECT_EQ(drawn_as(std::string(voxels) + " --shade-volume " + option), "grid") << option;
