@@ -39,7 +39,7 @@ public:
     using M = hn::Mask<D>;
 
     // `pixel`: of each lane; lanes behind `count` are none.
-    HWY_INLINE GridWalk(D d, const GridCells& grid, const GridRays& rays, const std::int32_t* pixel, M some) : d_(d), grid_(grid) {
+    HWY_NOINLINE GridWalk(D d, const GridCells& grid, const GridRays& rays, const std::int32_t* pixel, M some) : d_(d), grid_(grid) {
         const VI at = hn::LoadU(di_, pixel);
         length_ = hn::IfThenElseZero(some, hn::GatherIndex(d, rays.length.data(), at));
         t_ = hn::Zero(d);
