@@ -60,6 +60,8 @@ Decision segments(const GridScene& scene, const GridQuality& quality, const Grid
     if (facts.drawn == 0) return {"segments", "none", "no cell shows anything"};
     if (!facts.medium && has_surfaces(scene)) return {"segments", "none", "nothing is seen between the isosurfaces"};
     if (quality.sampling.cut != GridSampling::Cut::cells) return {"segments", method, "one in each slab, linear between its slices"};
+    if (facts.smaller_than_a_pixel && light_at_vertices(quality.method))
+        return {"segments", method, "cells are smaller than pixels: each is one square, lit along the pixel's own ray, not at vertices"};
     if (quality.method.kind == MethodKind::exact) return {"segments", method, "the cubic of the trilinear scalar, in as many lines as the error takes"};
     return {"segments", method, "one line in each cell, between the bilinear scalars of its faces"};
 }

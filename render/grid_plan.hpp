@@ -15,9 +15,10 @@ namespace cellproj {
 // As found for a scene by the renderer that draws it.
 struct GridFacts {
     bool rays;                 // walk from cell to cell (CPU), or cells and slabs are drawn (OpenGL)
-    std::size_t cells, drawn;  // of the grid, and those that are not left out
-    bool medium;               // whether there is light between surfaces
-    bool front_to_back = false;  // OpenGL: what lies behind opaque tiles is left out
+    std::size_t cells = 0, drawn = 0;    // of the grid, and those that are not left out
+    bool medium = true;                  // whether there is light between surfaces
+    bool front_to_back = false;          // OpenGL: what lies behind opaque tiles is left out
+    bool smaller_than_a_pixel = false;   // OpenGL: all cells in the picture
 };
 
 // The opacity above which what lies behind is left out: it would add less than 1e-4 to any channel. Nothing where rays are not expected to

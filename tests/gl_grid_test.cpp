@@ -368,15 +368,24 @@ TEST(GlGrid, LightAtVerticesFromInside) {
     }
 }
 
+// In perspective, too, whatever the eye's distance; and it is told.
 TEST(GlGrid, CellsSmallerThanAPixelAreOnePointEach) {
     const GridScene scene = scene_of(unit_cube(24, bumps), testing_support::ramp());
-    const Camera camera = testing_support::view_of_unit_cube(Projection::parallel);
-    Statistics statistics;
-    const Image image = renderer().render(scene, camera, {17, 13}, {parse_method("homogeneous:vertices")}, &statistics);
-    EXPECT_EQ(statistics.counts.triangles, 2 * statistics.counts.drawn);
-    EXPECT_EQ(testing_support::max_difference(image, draw(scene, camera, {17, 13}, "homogeneous")), 0);
-    renderer().render(scene, camera, {160, 120}, {parse_method("homogeneous:vertices")}, &statistics);
-    EXPECT_EQ(statistics.counts.triangles, statistics.counts.drawn * 12);  // three visible faces: 5 quads and 2 triangles
+    const auto reason = [](const Statistics& statistics) {
+        const auto segments = std::ranges::find_if(statistics.plan, [](const Decision& decision) { return decision.rule == "segments"; });
+        return segments == statistics.plan.end() ? std::string() : segments->why;
+    };
+    for (const auto projection : {Projection::parallel, Projection::perspective}) {
+        const Camera camera = testing_support::view_of_unit_cube(projection);
+        Statistics statistics;
+        const Image image = renderer().render(scene, camera, {17, 13}, {parse_method("homogeneous:vertices")}, &statistics);
+        EXPECT_EQ(statistics.counts.triangles, 2 * statistics.counts.drawn);
+        EXPECT_EQ(testing_support::max_difference(image, draw(scene, camera, {17, 13}, "homogeneous")), 0);
+        EXPECT_NE(reason(statistics).find("smaller than pixels"), std::string::npos) << reason(statistics);
+        renderer().render(scene, camera, {160, 120}, {parse_method("homogeneous:vertices")}, &statistics);
+        EXPECT_GT(statistics.counts.triangles, statistics.counts.drawn * 10);  // three visible faces: 5 quads and 2 triangles
+        EXPECT_EQ(reason(statistics).find("pixels"), std::string::npos) << reason(statistics);
+    }
 }
 
 // ---- What it does not draw ----

@@ -70,15 +70,27 @@ GridFootprints::GridFootprints(const GridView& view, const GridLight& light, Pro
     glEnable(GL_PROGRAM_POINT_SIZE);
 }
 
+// How far a point of a cell is at most from another one in the picture [pixels], along each axis of it; in perspective times the cell's least depth: of two
+// points p, q of a cell, p_x / p_z − q_x / q_z = (p_x − q_x) / p_z − (p_z − q_z) / p_z · q_x / q_z, and one in the picture serves as q.
+double GridFootprints::reach() const {
+    const double size = diameter_ * view_.transform().pixels_per_unit();
+    if (!view_.perspective()) return size;
+    const glm::dvec2 corner = view_.transform().principal_point() / view_.transform().pixels_per_unit();
+    return size * (1.0 + std::max(corner.x, corner.y));
+}
+
+bool GridFootprints::all_smaller_than_a_pixel() const {
+    if (!view_.perspective()) return reach() < 1.0;
+    double nearest = -0.5 * diameter_;
+    for (const std::vector<double>& depths : depths_) nearest += *std::min_element(depths.begin(), depths.end());
+    return reach() < nearest;
+}
+
 bool GridFootprints::points_fit(std::span<const std::uint32_t> cells) const {
     if (!square_) return false;
-    const double size = diameter_ * view_.transform().pixels_per_unit();
-    if (!view_.perspective()) return 2 * size < largest_point_;  // twice, where it is cut by the border of the picture
-    // Of two points p, q of a cell, p_x / p_z − q_x / q_z = (p_x − q_x) / p_z − (p_z − q_z) / p_z · q_x / q_z. One in the picture serves as
-    // q, so that none is farther from it than this, over the least depth; the square is up to four times as large, where it is cut.
-    const glm::dvec2 corner = view_.transform().principal_point() / view_.transform().pixels_per_unit();
-    const double reach = size * (1.0 + std::max(corner.x, corner.y));
-    const double nearest = 0.5 * diameter_ + 4 * reach / largest_point_;
+    if (!view_.perspective()) return 2 * reach() < largest_point_;  // twice, where it is cut by the border of the picture
+    // The square is up to four times as large, where it is cut.
+    const double nearest = 0.5 * diameter_ + 4 * reach() / largest_point_;
     return std::all_of(cells.begin(), cells.end(), [&](std::uint32_t id) {
         const std::size_t row = id / depths_[0].size(), slice = row / depths_[1].size();
         return depths_[0][id - row * depths_[0].size()] + depths_[1][row - slice * depths_[1].size()] + depths_[2][slice] > nearest;

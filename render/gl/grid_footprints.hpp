@@ -28,10 +28,11 @@ public:
 
     // In their order. Returns the number of triangles, two for a square or rectangle.
     std::size_t draw(std::span<const std::uint32_t> cells);
-    // Whether no cell reaches from one pixel to the next (parallel views).
-    bool all_smaller_than_a_pixel() const { return !view_.perspective() && diameter_ * view_.transform().pixels_per_unit() < 1.0; }
+    // Whether no cell in the picture reaches from one pixel to the next.
+    bool all_smaller_than_a_pixel() const;
 
 private:
+    double reach() const;
     bool points_fit(std::span<const std::uint32_t> cells) const;
 
     const GridView& view_;

@@ -159,7 +159,9 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     const bool cells = quality.sampling.cut == GridSampling::Cut::cells;
     std::optional<DepthWindow> window;
     if (ray_cuts(scene).any()) window.emplace(scene, camera, size, volume_->units().length);
-    cells ? draw_cells(view, camera, window ? &*window : nullptr, closed, statistics) : draw_slabs(view, closed, statistics);
+    GridFacts facts{.rays = false, .medium = medium_, .front_to_back = front_to_back()};
+    if (cells) facts.smaller_than_a_pixel = draw_cells(view, camera, window ? &*window : nullptr, closed, statistics);
+    else draw_slabs(view, closed, statistics);
 
     const Stopwatch read_back;
     Image image = target_.read();
@@ -178,7 +180,9 @@ Image GlGridRenderer::render(const GridScene& scene, const Camera& camera, Image
     statistics.backend_version = driver_version();
     statistics.order = cells ? "slices" : to_string(quality.sampling);
     statistics.order_exact = true;
-    statistics.plan = plan_of(scene, quality, {.rays = false, .cells = statistics.counts.cells, .drawn = statistics.counts.drawn, .medium = medium_, .front_to_back = front_to_back()});
+    facts.cells = statistics.counts.cells;
+    facts.drawn = statistics.counts.drawn;
+    statistics.plan = plan_of(scene, quality, facts);
     *out = std::move(statistics);
     return image;
 }
@@ -192,13 +196,15 @@ GridLight GlGridRenderer::light() {
             .lit_medium = lit_medium};
 }
 
-void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, ClosedTiles* closed, Statistics& statistics) {
+bool GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, ClosedTiles* closed, Statistics& statistics) {
     const std::string blending = blending_define(quality_.method);
     std::optional<const WindowTexture> kept;
     if (window) kept.emplace(*window, view.perspective() ? 0.0 : view.to_eye(glm::dvec3(0.0)).z, view.transform().size().width);
     GridFootprints footprints(view, light(), programs_, blending, kept ? &*kept : nullptr, indices_);
     std::optional<GridTemplates> templates;
-    if (light_at_vertices(quality_.method))
+    // WVG91 §4: one quad where polygons would cover no pixel.
+    const bool smaller_than_a_pixel = footprints.all_smaller_than_a_pixel();
+    if (light_at_vertices(quality_.method) && !smaller_than_a_pixel)
         templates.emplace(view, volume_->units(), *shader_, programs_, blending, footprints, indices_, pairs_);
 
     GridTraversal traversal(*scene_.grid, camera.viewpoint(), volume_->drawn(), closed ? largest_slice_first(view.forward()) : GridOrder{});
@@ -232,6 +238,7 @@ void GlGridRenderer::draw_cells(const GridView& view, const Camera& camera, cons
     const Stopwatch finish;
     glFinish();
     statistics.ms.draw += finish.ms();
+    return smaller_than_a_pixel;
 }
 
 void GlGridRenderer::draw_slabs(const GridView& view, ClosedTiles* closed, Statistics& statistics) {

@@ -46,7 +46,8 @@ private:
     GridLight light();
     // Front to back, if what is drawn may become opaque, until all of it is.
     bool front_to_back() const { return opaque_.has_value(); }
-    void draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, ClosedTiles* closed, Statistics& statistics);
+    // Returns whether no cell reaches from one pixel to the next.
+    bool draw_cells(const GridView& view, const Camera& camera, const DepthWindow* window, ClosedTiles* closed, Statistics& statistics);
     void draw_slabs(const GridView& view, ClosedTiles* closed, Statistics& statistics);
 
     std::unique_ptr<Context> context_;  // current during calls only

@@ -87,8 +87,6 @@ const CellTemplate& GridTemplates::template_of(const GridCell& cell, const Bound
 }
 
 std::size_t GridTemplates::draw(std::span<const std::uint32_t> cells) {
-    // WVG91 §4: one quad where polygons would cover no pixel.
-    if (footprints_.all_smaller_than_a_pixel()) return footprints_.draw(cells);
     return moved_ ? draw_moved(cells) : draw_streamed(cells);
 }
 

@@ -29,8 +29,8 @@ std::span<const VertexAttribute> vertex_attributes(const TemplatePair*);
 
 class GridTemplates {
 public:
-    // All must outlive this. `footprints`: for cells that reach behind the near plane, which have no projection, and where all are
-    // smaller than a pixel; with light by the same method in each pixel.
+    // All must outlive this. `footprints`: for cells that reach behind the near plane, which have no projection; with light
+    // by the same method in each pixel.
     GridTemplates(const GridView& view, const GridUnits& units, const SegmentShader& shader, Programs& programs,
                   const std::string& defines, GridFootprints& footprints, TriangleStream& indices, TriangleStream& pairs);
 
