@@ -121,7 +121,8 @@ TEST_F(TradeCommand, MeasuresWhatIsCut) {
         const Outcome outcome = run("trade", std::string("--rounds 1 --json t.json ") + cuts);
         ASSERT_EQ(outcome.code, 0) << outcome.text;
         EXPECT_EQ(outcome.text.find("shirley-tuchman"), std::string::npos) << outcome.text;
-        for (const auto& row : nlohmann::json::parse(content("t.json")).at("methods")) {
+        const auto json = nlohmann::json::parse(content("t.json"));
+        for (const auto& row : json.at("methods")) {
             const std::string method = row.at("method");
             if (method.rfind("exact", 0) != 0 || row.at("target") != "rgba32f") continue;
             EXPECT_LT(row.at("error").at("color").at("maximum"), 1e-4) << cuts << " " << method;
