@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "mesh/error.hpp"
+
 namespace cellproj {
 
 RayCuts count_cuts(const ClipRegion* clip, const BodyScene* bodies, const SliceScene* slices) {
@@ -25,6 +27,14 @@ std::string describe(const RayCuts& cuts, bool opaque_alone) {
     add(cuts.slices, "slice", "slices");
     add(cuts.caps, "cap", "caps");
     return text;
+}
+
+bool draws(const Method& method, const RayCuts& cuts) { return !cuts.any() || !light_at_vertices(method); }
+
+void require_drawn(const Method& method, const RayCuts& cuts) {
+    if (draws(method, cuts)) return;
+    throw Error({ErrorKind::option, "--method", "one of light per pixel for a scene with " + describe(cuts), to_string(method),
+                 "use integral, exact or a table"});
 }
 
 }  // namespace cellproj

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 
+#include "classify/method.hpp"
 #include "render/body_scene.hpp"
 #include "render/clip_region.hpp"
 #include "render/slice_scene.hpp"
@@ -25,5 +26,10 @@ RayCuts count_cuts(const ClipRegion* clip, const BodyScene* bodies, const SliceS
 
 // "2 clipping planes, 1 slice"; those that are opaque alone if so asked.
 std::string describe(const RayCuts& cuts, bool opaque_alone = false);
+
+// Whether a method draws rays that are cut so: light at vertices knows no place on a ray.
+bool draws(const Method& method, const RayCuts& cuts);
+// Throws Error (option) if not.
+void require_drawn(const Method& method, const RayCuts& cuts);
 
 }  // namespace cellproj

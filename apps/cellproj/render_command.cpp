@@ -177,7 +177,7 @@ Quality choose_measured(Renderer& renderer, Backend backend, const Scene& scene,
     how.base.check_rays = 0;
     how.draws = [backend, &scene](const Quality& quality) {
         return draws(backend, quality, fields_read(scene)) && (!has_surface_scene(scene) || takes_surfaces(quality.method)) &&
-               !(ray_cuts(scene).any() && light_at_vertices(quality.method));  // which knows no place in a segment
+               draws(quality.method, ray_cuts(scene));
     };
     const QualityChoice choice = [&] {
         const Progress progress("choosing a method");

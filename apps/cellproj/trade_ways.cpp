@@ -41,14 +41,11 @@ Backend backend_for(const SceneOptions& scene, const TradeChoices& choices, cons
     return wished_backend(choices.wish, quality, scene.fields(), choices.gpu);
 }
 
-// Light at vertices knows no place on a ray.
-bool knows_cuts(const SceneOptions& scene, const Quality& quality) { return !planned_cuts(scene.cuts).any() || !light_at_vertices(quality.method); }
-
 // Those that can draw the scene.
 std::vector<Quality> possible_qualities(const SceneOptions& scene, const TradeChoices& choices) {
     std::vector<Quality> qualities = scene.iso.any_shaded() ? surface_qualities() : trade_qualities();
     std::erase_if(qualities, [&](const Quality& quality) {
-        return !draws(backend_for(scene, choices, quality), quality, scene.fields()) || !knows_cuts(scene, quality) ||
+        return !draws(backend_for(scene, choices, quality), quality, scene.fields()) || !draws(quality.method, planned_cuts(scene.cuts)) ||
                (!scene.iso.any() && quality.surfaces.kind != SurfaceMethodKind::exact);
     });
     return qualities;
@@ -91,10 +88,7 @@ void require_all_drawn(const SceneOptions& scene, const TradeChoices& choices, s
     if (qualities.empty()) require_drawn(backend_for(scene, choices, {}), {}, scene.fields());  // says why there is none
     for (const Quality& quality : qualities) {
         require_drawn(backend_for(scene, choices, quality), quality, scene.fields());
-        if (!knows_cuts(scene, quality)) {
-            throw Error({ErrorKind::option, "--method", "one of light per pixel for a scene with " + describe(planned_cuts(scene.cuts)),
-                         to_string(quality.method), "use integral, exact or a table"});
-        }
+        require_drawn(quality.method, planned_cuts(scene.cuts));
     }
 }
 

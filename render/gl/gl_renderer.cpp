@@ -96,7 +96,7 @@ void GlRenderer::prepare(const Scene& scene, const Quality& quality) {
 void GlRenderer::prepare_here(const Scene& scene, const Quality& quality) {
     require_drawn(Backend::gl_osmesa, quality, fields_read(scene));
     SurfacePass::require_drawn(scene, quality);
-    WindowTexture::require_drawn(scene, quality);
+    require_drawn(quality.method, ray_cuts(scene));
     const bool same_cells = prepared_ && prepared_->scene().mesh == scene.mesh && prepared_->scene().field == scene.field &&
                             prepared_->scene().opacity_field == scene.opacity_field;
     const bool same_transfer = same_cells && prepared_->scene().transfer == scene.transfer;

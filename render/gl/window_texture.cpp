@@ -5,8 +5,6 @@
 #include <array>
 #include <vector>
 
-#include "mesh/error.hpp"
-
 namespace cellproj::gl {
 
 namespace {
@@ -38,12 +36,6 @@ std::vector<float> depth_texels(const DepthWindow& window, double reference) {
 }
 
 }  // namespace
-
-void WindowTexture::require_drawn(const Scene& scene, const Quality& quality) {
-    if (!ray_cuts(scene).any() || !light_at_vertices(quality.method)) return;
-    throw Error({ErrorKind::option, "--method", "one of light per pixel for a scene that is clipped or has bodies or slices", to_string(quality.method),
-                 "use integral, exact or a table"});
-}
 
 WindowTexture::WindowTexture(const DepthWindow& window, const NearnessFrame& frame, int width)
     : texels_(Texture::list_of_pairs(nearness_texels(window, frame))), width_(width) {}

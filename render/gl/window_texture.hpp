@@ -14,9 +14,6 @@ namespace cellproj::gl {
 
 class WindowTexture {
 public:
-    // Throws Error (option) for a scene with cuts and a method of light at the vertices, which knows no place in a segment.
-    static void require_drawn(const Scene& scene, const Quality& quality);
-
     // `frame`: that of the fragments' nearness.
     WindowTexture(const DepthWindow& window, const NearnessFrame& frame, int width);
     // For cells of grids, along whose rays a parameter is the depth less that of the view's reference point.

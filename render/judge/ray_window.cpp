@@ -96,7 +96,7 @@ RayWindow ray_window(const ClipRegion* clip, const BodyScene* bodies, const glm:
         window.begin = std::numeric_limits<double>::infinity();
         window.end = -window.begin;
     };
-    for (const HalfSpace& half_space : clip ? clip->half_spaces : std::vector<HalfSpace>{}) {
+    for (const HalfSpace& half_space : clip ? std::span(clip->half_spaces) : std::span<const HalfSpace>()) {
         const PlaneOnRay plane(half_space, middle, ray);
         if (plane.speed > 0) window.begin = std::max(window.begin, plane.root());
         if (plane.speed < 0) window.end = std::min(window.end, plane.root());
