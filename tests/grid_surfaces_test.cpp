@@ -23,6 +23,7 @@
 #include "tests/support/grids.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/spherical_harmonic.hpp"
+#include "tests/support/view_judge.hpp"
 
 namespace cellproj {
 namespace grid_surfaces_test {
@@ -60,19 +61,7 @@ GridQuality by(const std::string& method) { return {.method = parse_method(metho
 
 // The largest error of any channel. Where it is more than `tolerance`, against what the judge sees within `slack` pixels, too.
 double error_of(const Image& image, const GridScene& scene, const Camera& camera, double tolerance, double slack = float32_slack) {
-    EXPECT_EQ(count_non_finite(image), 0U);
-    const ImageSize size{image.width, image.height};
-    const GridReference reference(scene.grid, scene.transfer, scene.surfaces);
-    double most = 0;
-    std::vector<PixelId> doubtful;
-    for (const PixelTruth& truth : reference.pixels(camera, size, all_pixels(size))) {
-        const glm::dvec4 errors = error_of_pixel(image, truth);
-        const double error = std::max({errors.r, errors.g, errors.b, errors.a});
-        if (error > tolerance) doubtful.push_back(truth.pixel);
-        else most = std::max(most, error);
-    }
-    EXPECT_LT(doubtful.size(), all_pixels(size).size() / 20);  // silhouettes are few
-    return doubtful.empty() ? most : std::max(most, largest(compare(image, reference.pixels(camera, size, doubtful, slack))));
+    return testing_support::error_but_for_silhouettes(image, GridReference(scene), camera, tolerance, slack);
 }
 
 // Normals: where gradients nearly vanish, float32 turns them.

@@ -19,6 +19,7 @@
 #include "tests/support/differences.hpp"
 #include "tests/support/grids.hpp"
 #include "tests/support/scenes.hpp"
+#include "tests/support/view_judge.hpp"
 
 namespace cellproj::testing_support {
 
@@ -74,19 +75,7 @@ inline LitView lit_noise(int trial, Camera::Projection projection, std::mt19937_
 // The largest error of all pixels. `tolerance`: where more is off, against what the judge sees within a thousandth of a pixel, too: a ray that just
 // touches a surface or a step sees it or not, by float32.
 inline double error_against_judge(const Image& image, const GridScene& scene, const Camera& camera, double tolerance) {
-    const ImageSize size{image.width, image.height};
-    EXPECT_EQ(count_non_finite(image), 0U);
-    const GridReference reference = judge(scene);
-    double most = 0;
-    std::vector<PixelId> doubtful;
-    for (const PixelTruth& truth : reference.pixels(camera, size, all_pixels(size))) {
-        const glm::dvec4 errors = error_of_pixel(image, truth);
-        const double error = std::max({errors.r, errors.g, errors.b, errors.a});
-        if (error > tolerance) doubtful.push_back(truth.pixel);
-        else most = std::max(most, error);
-    }
-    EXPECT_LT(doubtful.size(), all_pixels(size).size() / 20);
-    return doubtful.empty() ? most : std::max(most, largest(compare(image, reference.pixels(camera, size, doubtful, 1e-3))));
+    return error_but_for_silhouettes(image, judge(scene), camera, tolerance, 1e-3);
 }
 
 }  // namespace cellproj::testing_support

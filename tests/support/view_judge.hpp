@@ -32,8 +32,23 @@ public:
     // What the picture's pixels should be: those off by `enough` or more with the slack, the others at their centres.
     std::vector<PixelTruth> truths_for(const Image& image, double enough) const {
         std::vector<PixelTruth> truths = centers_;
-        if (slack_ > 0) look_around(truths, image, enough);
+        if (!(slack_ > 0)) return truths;
+        const std::vector<std::size_t> doubtful = this->doubtful(image, enough);
+        std::vector<PixelId> pixels;
+        for (const std::size_t i : doubtful) pixels.push_back(centers_[i].pixel);
+        const std::vector<PixelTruth> ranges = judge_.pixels(camera_, size_, pixels, slack_);
+        for (std::size_t i = 0; i < doubtful.size(); ++i) truths[doubtful[i]] = ranges[i];
         return truths;
+    }
+
+    // The pixels off by `enough` or more at their centres, as indices into those that count.
+    std::vector<std::size_t> doubtful(const Image& image, double enough) const {
+        std::vector<std::size_t> found;
+        for (std::size_t i = 0; i < centers_.size(); ++i) {
+            const glm::dvec4 error = error_of_pixel(image, centers_[i]);
+            if (!(std::max({error.r, error.g, error.b, error.a}) < enough)) found.push_back(i);
+        }
+        return found;
     }
 
     // The errors of the picture, exact from `enough` on.
@@ -47,24 +62,22 @@ public:
     }
 
 private:
-    void look_around(std::vector<PixelTruth>& truths, const Image& image, double enough) const {
-        std::vector<std::size_t> doubtful;
-        std::vector<PixelId> pixels;
-        for (std::size_t i = 0; i < truths.size(); ++i) {
-            const glm::dvec4 error = error_of_pixel(image, truths[i]);
-            if (std::max({error.r, error.g, error.b, error.a}) < enough) continue;  // what is not finite is infinitely wrong
-            doubtful.push_back(i);
-            pixels.push_back(truths[i].pixel);
-        }
-        const std::vector<PixelTruth> ranges = judge_.pixels(camera_, size_, pixels, slack_);
-        for (std::size_t i = 0; i < doubtful.size(); ++i) truths[doubtful[i]] = ranges[i];
-    }
-
     Judge judge_;
     Camera camera_;
     ImageSize size_;
     double slack_;
     std::vector<PixelTruth> centers_;
 };
+
+// The largest error of any channel of all pixels, exact from `tolerance` on. Only silhouettes may be off by more at the centres of pixels: a
+// twentieth of them.
+template <class Judge>
+double error_but_for_silhouettes(const Image& image, Judge judge, const Camera& camera, double tolerance, double slack) {
+    EXPECT_EQ(count_non_finite(image), 0U);
+    const ImageSize size{image.width, image.height};
+    const ViewJudge view(std::move(judge), camera, size, slack);
+    EXPECT_LT(view.doubtful(image, tolerance).size(), all_pixels(size).size() / 20);
+    return largest(view.compare(image, tolerance));
+}
 
 }  // namespace cellproj::testing_support
