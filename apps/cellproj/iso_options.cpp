@@ -44,7 +44,7 @@ void add_surfaces(std::string_view text, const TransferFunction& colors, std::ve
 
 DirectionalLight to_light(std::string_view text) {
     const auto refuse_light = [&](const std::string& expected, std::string_view found) {
-        throw Error({ErrorKind::option, "--light", expected, "\"" + std::string(found) + "\"", "give --light again for a second light"});
+        throw Error({ErrorKind::option, "--light", expected, "\"" + std::string(found) + "\"", "write X,Y,Z[:COLOR] or eye[:COLOR], and --light again for a second light"});
     };
     const auto parts = split(text, ':');
     if (parts.size() > 2) refuse_light("X,Y,Z[:COLOR] or eye[:COLOR]", text);
